@@ -9,6 +9,27 @@ pub struct Linearised {
     pub noises: Vec<Vec<Vec<f64>>>,
 }
 
+impl Linearised {
+    /// The rate, in 1/t, at which a density that is the same everywhere about the fixed point thins out:
+    /// tr A - ½ Σ ((tr B_k)² + tr B_k²).
+    ///
+    /// The stationary density beside a fixed point that repels goes like r^(γ - d) at the distance r in d dimensions,
+    /// with g(-γ) = 0, where g(p) = lim ln E|v|^p / t is convex and g(0) = 0. A constant density is a solution of the
+    /// Fokker-Planck equation of the linear one but for its growth, so that g(-d) is minus this rate: where it is
+    /// positive, γ > d and the density vanishes at the fixed point, where it is negative it is infinite there. In one
+    /// dimension γ - 1 = 2 (a - b²)/b². (Moments: L. Arnold, *Random Dynamical Systems*, Springer 1998, section 6.2.)
+    pub fn thinning(&self) -> f64 {
+        let trace = |m: &[Vec<f64>]| (0..m.len()).map(|i| m[i][i]).sum::<f64>();
+        let of_square = |m: &[Vec<f64>]| {
+            let pairs = (0..m.len()).flat_map(|i| (0..m.len()).map(move |j| (i, j)));
+            pairs.map(|(i, j)| m[i][j] * m[j][i]).sum::<f64>()
+        };
+        let noises = self.noises.iter();
+        let spread = noises.map(|b| trace(b).powi(2) + of_square(b)).sum::<f64>();
+        trace(&self.drift) - 0.5 * spread
+    }
+}
+
 /// Why there is no linear equation about a state.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FixedPointFault {
