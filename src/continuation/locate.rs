@@ -51,7 +51,7 @@ pub(super) fn label_points(
                 Some(Course::Beyond(at)) => {
                     by_bracket(&solved, observables, change, [*at; 2], Doubt::BornBeyond)
                 }
-                None => by_persistence(&solved, observables, change, options),
+                None => by_persistence(&solved, observables, change, (detector, options)),
             };
             (row, change)
         });
@@ -129,9 +129,9 @@ fn by_persistence(
     points: &[&Point],
     observables: &[Observable],
     change: &Change,
-    options: &Goal,
+    (detector, options): (&dyn Detector, &Goal),
 ) -> Located {
-    let found = persistence::band(points, change.observable, change.left);
+    let found = persistence::band(points, change.observable, change.left, detector.doubt());
     // Counting follows what the cells show, and nothing says how far that is from the truth, but for noise.
     let is_noisy = points[change.left].densities[change.observable].is_noisy();
     let is_narrow = found.upper - found.lower <= options.tolerance * (1.0 + 1e-9);

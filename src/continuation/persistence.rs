@@ -42,7 +42,8 @@ pub(super) struct Band {
 }
 
 /// The band of a change between `points[left]` and its successor: the hull over the counts that differ.
-pub(super) fn band(points: &[&Point], observable: usize, left: usize) -> Band {
+/// `doubt` is the probability with which signs at a centre may be wrong.
+pub(super) fn band(points: &[&Point], observable: usize, left: usize, doubt: f64) -> Band {
     let (a, b) = (points[left], points[left + 1]);
     let mut change = Band {
         value: 0.5 * (a.value + b.value),
@@ -70,7 +71,8 @@ pub(super) fn band(points: &[&Point], observable: usize, left: usize) -> Band {
             births.extend(found);
         }
     }
-    if let Some(far) = told_again(points, observable, left) {
+    let untold = (births.is_empty()).then(|| told_again(points, observable, left, doubt));
+    if let Some(far) = untold.flatten() {
         change.sinks = true;
         births.push((change.value, far.min(a.value), far.max(b.value)));
     }
@@ -89,10 +91,13 @@ pub(super) fn band(points: &[&Point], observable: usize, left: usize) -> Band {
     change
 }
 
-/// Where indicators at a centre say on one side only what is there: the first value on the other side at which they say
-/// it again, or the last one there is. Until then nothing tells whether it changes.
-fn told_again(points: &[&Point], observable: usize, left: usize) -> Option<f64> {
-    let is_told = |point: &&Point| !point.detections[observable].indicators.is_empty();
+/// Where the signs of indicators at a centre are certain on one side only: the first value on the other side at which
+/// they are so again, or the last one there is. Until then nothing tells whether what is there changes.
+fn told_again(points: &[&Point], observable: usize, left: usize, doubt: f64) -> Option<f64> {
+    let is_told = |point: &&Point| {
+        let mut indicators = point.detections[observable].indicators.iter().peekable();
+        indicators.peek().is_some() && indicators.all(|one| one.sign(doubt).is_some())
+    };
     let far = |mut outward: Vec<&&Point>| {
         let told = outward.iter().position(|point| is_told(point));
         outward.truncate(told.map_or(outward.len(), |told| told + 1));
@@ -310,6 +315,41 @@ mod tests {
                 "the band from {value} to 0.1 holds the birth at 0"
             );
         }
+    }
+
+    #[test]
+    fn a_birth_is_where_it_is_whatever_the_density_sinks_by() {
+        // A peak of e^{-40 θ} stands above its saddle by the square law from 0 on, and is seen from 0.05 on.
+        let seen = |theta: f64| {
+            let (top, q) = ((-40.0 * theta).exp(), 0.3 * theta * theta);
+            let feature = Feature {
+                kind: FeatureKind::Peak,
+                position: vec![0.0],
+                density: top,
+                persistence: top * -(-q).exp_m1(),
+                standard_error: 1e-9 * top,
+                significance: 2.0,
+                verdict: Verdict::Present,
+                partner: None,
+                errors: crate::topology::FeatureErrors::default(),
+            };
+            let (height, error) = height(&feature);
+            Sighting {
+                value: theta,
+                place: vec![0.0],
+                height,
+                error,
+                cells_apart: 9.0,
+            }
+        };
+        let near = [0.05, 0.0501, 0.0502, 0.0504, 0.0508, 0.1, 0.15, 0.2];
+        let births = births_of(&near.map(seen));
+        assert_eq!(births.len(), 1);
+        let (value, lower, upper) = births[0];
+        assert!(
+            value.abs() < 1e-6 && lower <= 1e-6 && upper >= -1e-6,
+            "{births:?}"
+        );
     }
 
     #[test]

@@ -56,3 +56,34 @@ pub enum FixedPointFault {
     #[error("a parameter has a value there that is not allowed")]
     NotAllowed,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Linearised;
+
+    #[test]
+    fn a_density_turns_from_infinite_to_zero_where_it_neither_thins_out_nor_piles_up() {
+        // On one axis the power is 2a/b² - 2.
+        for (a, b) in [(0.3f64, 0.5f64), (0.2, 0.5), (1.0, 1.0)] {
+            let linear = Linearised {
+                drift: vec![vec![a]],
+                noises: vec![vec![vec![b]]],
+            };
+            let power = 2.0 * a / (b * b) - 2.0;
+            assert!((linear.thinning() - 0.5 * b * b * power).abs() < 1e-15);
+        }
+        // Noise in the stiffness of an oscillator: the damping alone.
+        let linear = Linearised {
+            drift: vec![vec![0.0, 1.0], vec![-1.0, 0.07]],
+            noises: vec![vec![vec![0.0, 0.0], vec![0.5, 0.0]]],
+        };
+        assert!((linear.thinning() - 0.07).abs() < 1e-15);
+        // Two equal axes under one noise, dx_i = a x_i dt + b x_i dW: r goes like the one of one axis, and p ~ r^(γ - 2)
+        // with γ = 2 (a - b²/2)/b², which is 2 at a = 3 b²/2.
+        let of = |a: f64| Linearised {
+            drift: vec![vec![a, 0.0], vec![0.0, a]],
+            noises: vec![vec![vec![0.4, 0.0], vec![0.0, 0.4]]],
+        };
+        assert!(of(1.5 * 0.16).thinning().abs() < 1e-15 && of(0.25).thinning() > 0.0);
+    }
+}
