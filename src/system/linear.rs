@@ -78,8 +78,8 @@ mod tests {
             noises: vec![vec![vec![0.0, 0.0], vec![0.5, 0.0]]],
         };
         assert!((linear.thinning() - 0.07).abs() < 1e-15);
-        // Two equal axes under one noise, dx_i = a x_i dt + b x_i dW: r goes like the one of one axis, and p ~ r^(γ - 2)
-        // with γ = 2 (a - b²/2)/b², which is 2 at a = 3 b²/2.
+        // Two equal axes under one noise, dx_i = a x_i dt + b x_i dW: r goes like the one of one axis, and
+        // p ~ r^(γ - 2) with γ = 2 (a - b²/2)/b², which is 2 at a = 3 b²/2.
         let of = |a: f64| Linearised {
             drift: vec![vec![a, 0.0], vec![0.0, a]],
             noises: vec![vec![vec![0.4, 0.0], vec![0.0, 0.4]]],

@@ -14,7 +14,7 @@ use super::one_axis;
 use super::passages::{add_passages, at_nodes};
 use super::relaxation::Relaxation;
 use super::rotation::{Steady, rotation};
-use super::second::{ROUGH, Second, SecondSolve, closing, companion};
+use super::second::{Second, SecondSolve, companion};
 use super::sensitivity::GeneratorSensitivity;
 use super::slow_modes::add_slow_modes;
 use super::source::METHOD;
@@ -35,12 +35,11 @@ use crate::passage::KnownDensity;
 use crate::stationary::generator::{Along, RateInfo, RateSolver, RateSteadyState};
 use crate::system::System;
 
-/// Share of the mass that leaves within one relaxation time from which on the errors of densities have a part for it:
-/// below it schemes differ by more.
-const LEAST_SHARE: f64 = 1e-5;
-
 /// Escape per unit time below which mass is said to stay in Ω, and relaxation is not looked at.
 const NO_ESCAPE: f64 = 1e-12;
+
+/// Relative error of differences between schemes, which estimate errors.
+const ROUGH: f64 = 1e-2;
 
 /// Distance in L1 of the unknowns that were expected to those that were found up to which a difference between schemes
 /// that was worked out for the first is that of the second, to [`ROUGH`].
@@ -254,8 +253,7 @@ impl GeneratorSession {
         for judged in resolution(solved.system.as_ref(), space, &masses) {
             reporter.resolution(&judged);
         }
-        let leaks = share > LEAST_SHARE;
-        let (densities, second) = self.densities(solved, &masses, leaks)?;
+        let (densities, second) = self.densities(solved, &masses)?;
         // What is negative along a series is told of its modes.
         let carried = |axis: &usize| space.axes().get(*axis).is_some_and(|axis| axis.is_modes());
         let by_cells = densities
@@ -352,13 +350,11 @@ impl GeneratorSession {
         near.or_else(|| Relaxation::compute(&mut self.solver, mass, neighbour))
     }
 
-    /// Densities with their error: the difference to the second scheme, and, where enough `leaks`, what closed ends
-    /// would change; and what the second scheme gives.
+    /// Densities with the difference to the second scheme as their error, and what the second scheme gives.
     fn densities(
         &mut self,
         solved: &PointSolve,
         masses: &[f64],
-        leaks: bool,
     ) -> Result<(Vec<EstimatedDensity>, Second), MethodError> {
         let problem = &self.source.problem;
         let (system, space) = (solved.system.as_ref(), problem.space());
@@ -372,14 +368,7 @@ impl GeneratorSession {
             }
             (None, _) => vec![0.0; unknowns.len()],
         };
-        let mut changed: Vec<f64> = unknowns.iter().zip(&change).map(|(u, du)| u + du).collect();
-        if leaks && solved.second.is_some() {
-            let closing = closing(&self.source, &mut self.solver, (system, unknowns), &change)?;
-            changed
-                .iter_mut()
-                .zip(closing)
-                .for_each(|(one, by)| *one += by);
-        }
+        let changed: Vec<f64> = unknowns.iter().zip(&change).map(|(u, du)| u + du).collect();
         let by_second = cell_masses(system, space, &changed);
         let difference: Vec<f64> = by_second.iter().zip(masses).map(|(b, a)| b - a).collect();
         let kinked = &self.source.kinked;
