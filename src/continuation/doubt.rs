@@ -118,6 +118,9 @@ pub enum Doubt {
     GridCheckOff,
     /// Finer cells could have been asked, and were not: the sweep ended before, or holds no checks.
     CheckMissing,
+    /// It is read beside a fixed point that noise leaves alone, where the density goes like a power of the distance;
+    /// and where in the sweep that power passes zero, if it is a density of all axes.
+    AtRest(Option<f64>),
     /// The indicator is lost between two values: more cells may show more of it.
     IndicatorLost,
     /// The density where the feature vanishes is lower than what the solver leaves: it may be there up to the end of

@@ -8,7 +8,7 @@ use crate::topology::{Detector, Indicator, IndicatorKind, is_clear};
 const ONE_PLACE: f64 = 0.1;
 
 /// Times its error that a density must be where an indicator that is lost tells that there is none.
-const WELL: f64 = 10.0;
+pub(super) const WELL: f64 = 10.0;
 
 /// A change of sign of an indicator between two neighbouring points.
 #[derive(Debug, Clone)]

@@ -1,5 +1,6 @@
 //! The rows of a sweep: every change of signature with its value, error, bracket and status.
 
+use super::at_rest::beside_fixed_point;
 use super::change::{Change, changes};
 use super::d_bifurcations::d_bifurcations;
 use super::doubt::MOST_TIMES;
@@ -50,7 +51,7 @@ pub(super) fn label_points(
                 Some(Course::Beyond(at)) => {
                     by_bracket(&solved, observables, change, [*at; 2], Doubt::BornBeyond)
                 }
-                None => by_persistence(&solved, observables, change, options),
+                None => by_persistence(&solved, observables, change, (detector, options)),
             };
             (row, change)
         });
@@ -128,9 +129,9 @@ fn by_persistence(
     points: &[&Point],
     observables: &[Observable],
     change: &Change,
-    options: &Goal,
+    (detector, options): (&dyn Detector, &Goal),
 ) -> Located {
-    let found = persistence::band(points, change.observable, change.left);
+    let found = persistence::band(points, change.observable, change.left, detector.doubt());
     // Counting follows what the cells show, and nothing says how far that is from the truth, but for noise.
     let is_noisy = points[change.left].densities[change.observable].is_noisy();
     let is_narrow = found.upper - found.lower <= options.tolerance * (1.0 + 1e-9);
@@ -142,7 +143,9 @@ fn by_persistence(
     } else {
         found.upper.max(points[change.right].value)
     };
-    let doubt = if is_resolved {
+    let doubt = if found.sinks {
+        Doubt::TooLow
+    } else if is_resolved {
         Doubt::NoIndicator
     } else {
         Doubt::FewCellsApart
@@ -218,6 +221,16 @@ pub(super) fn by_indicator(
         is_noisy: density.is_noisy(),
         wider: WiderRange::of(a, subject),
     };
+    let own = (
+        subject.observables[change.observable],
+        density.density.axes.as_slice(),
+    );
+    let at_rest = depends_on_cells
+        .then(|| beside_fixed_point(points, &subject.family, own, checked.place, zero.value));
+    let at_rest = at_rest.flatten();
+    if let Some(Doubt::AtRest(Some(exact))) = at_rest {
+        zero.error.grid = zero.error.grid.max((exact - zero.value).abs());
+    }
     let error = zero.error.total();
     Located {
         value: zero.value,
@@ -230,7 +243,7 @@ pub(super) fn by_indicator(
             slope: zero.slope,
             parts: zero.error,
         }),
-        doubts: evidence.doubts(),
+        doubts: at_rest.into_iter().chain(evidence.doubts()).collect(),
         ..band(&subject.observables, change, (0.0, 0.0, 0.0), None)
     }
 }

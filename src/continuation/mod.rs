@@ -32,6 +32,7 @@
 //! persistence to zero and states the band from there to the last point where the feature is present.
 
 mod again;
+mod at_rest;
 mod beside;
 mod bracket;
 mod change;

@@ -1,21 +1,27 @@
 //! Where a signature changes when no indicator tells: the band from persistence alone.
 //!
-//! A feature is counted when its persistence q exceeds the noise, which is later than its birth. Near a
-//! smooth P-bifurcation, and at the kink of a switching surface, q grows like (θ - θ*)²; at the birth of a
-//! peak away from symmetry like (θ - θ*)^{3/2}; where the rim of a crater breaks like θ - θ*. The straight
+//! A feature is counted when its persistence exceeds the noise, which is later than its birth. With q the logarithm of
+//! its density over that at the saddle where it merges, so that it does not matter whether the density there rises or
+//! sinks as a whole, q grows like (θ - θ*)² near a smooth P-bifurcation, and at the kink of a switching surface; at the
+//! birth of a peak away from symmetry like (θ - θ*)^{3/2}; where the rim of a crater breaks like θ - θ*. The straight
 //! line through √q therefore meets zero at θ* in the first case and beyond it, seen from the side where the feature
 //! is present, in the others: θ* lies between that zero and the last point where the feature is present.
 //! The zero's own uncertainty comes from shifting all q by ± two standard errors (common random numbers make
 //! neighbouring errors alike, so they do not average out) and from dropping the point farthest away. A feature only a
 //! few cells from its neighbour is seen through the cells' averages, which shift its birth: a second line through
-//! points where it is well apart must agree, and the band holds both zeros. A change whose feature is nowhere well
-//! apart is `unconfirmed`: it may be one of the cells, not of the density.
+//! points where it is well apart must agree, and the band holds both zeros. So must a line through points that reach
+//! as far as the zero is away. A change whose feature is nowhere well apart is `unconfirmed`: it may be one of the
+//! cells, not of the density.
+//!
+//! Where no line meets zero and the feature stands well above its saddle when it is last seen, it was not born there:
+//! the density has sunk below its errors, and the band reaches to where it is a clear multiple of them again.
 
 use super::Point;
 use super::bracket::{count, deciding_feature};
 use super::events::COUNTED;
+use super::follow::WELL;
 use crate::density::EstimatedDensity;
-use crate::topology::{Detection, Feature, FeatureKind, Verdict};
+use crate::topology::{Detection, Feature, FeatureKind, Verdict, is_clear};
 
 /// Points used to extrapolate the birth of a feature.
 const FITTED_POINTS: usize = 5;
@@ -31,16 +37,20 @@ pub(super) struct Band {
     pub(super) upper: f64,
     /// Whether every deciding feature is well apart from others at some point.
     pub(super) resolved_by_cells: bool,
+    /// Whether a deciding feature was lost in the errors of the density, not seen to vanish.
+    pub(super) sinks: bool,
 }
 
 /// The band of a change between `points[left]` and its successor: the hull over the counts that differ.
-pub(super) fn band(points: &[&Point], observable: usize, left: usize) -> Band {
+/// `doubt` is the probability with which signs at a centre may be wrong.
+pub(super) fn band(points: &[&Point], observable: usize, left: usize, doubt: f64) -> Band {
     let (a, b) = (points[left], points[left + 1]);
     let mut change = Band {
         value: 0.5 * (a.value + b.value),
         lower: a.value,
         upper: b.value,
         resolved_by_cells: true,
+        sinks: false,
     };
     let mut births = Vec::new();
     for kind in COUNTED {
@@ -49,8 +59,22 @@ pub(super) fn band(points: &[&Point], observable: usize, left: usize) -> Band {
             let rank = counts[0].min(counts[1]);
             let present = present_side(points, observable, left, kind, rank, counts[0] > counts[1]);
             change.resolved_by_cells &= present.iter().any(|seen| seen.cells_apart >= WELL_APART);
-            births.extend(births_of(&present));
+            let found = births_of(&present);
+            let last = present
+                .first()
+                .filter(|seen| found.is_empty() && seen.height > YOUNG);
+            if let Some(seen) = last {
+                let far = clear_again(points, observable, left, seen, counts[0] > counts[1]);
+                change.sinks |= far.is_some();
+                births.extend(far.map(|far| (change.value, far.min(a.value), far.max(b.value))));
+            }
+            births.extend(found);
         }
+    }
+    let untold = (births.is_empty()).then(|| told_again(points, observable, left, doubt));
+    if let Some(far) = untold.flatten() {
+        change.sinks = true;
+        births.push((change.value, far.min(a.value), far.max(b.value)));
     }
     for &(value, lower, upper) in &births {
         change.lower = change.lower.min(lower);
@@ -67,11 +91,56 @@ pub(super) fn band(points: &[&Point], observable: usize, left: usize) -> Band {
     change
 }
 
+/// Where the signs of indicators at a centre are certain on one side only: the first value on the other side at which
+/// they are so again, or the last one there is. Until then nothing tells whether what is there changes.
+fn told_again(points: &[&Point], observable: usize, left: usize, doubt: f64) -> Option<f64> {
+    let is_told = |point: &&Point| {
+        let mut indicators = point.detections[observable].indicators.iter().peekable();
+        indicators.peek().is_some() && indicators.all(|one| one.sign(doubt).is_some())
+    };
+    let far = |mut outward: Vec<&&Point>| {
+        let told = outward.iter().position(|point| is_told(point));
+        outward.truncate(told.map_or(outward.len(), |told| told + 1));
+        outward.last().map(|point| point.value)
+    };
+    match (is_told(&points[left]), is_told(&points[left + 1])) {
+        (true, false) => far(points.iter().skip(left + 1).collect()),
+        (false, true) => far(points.iter().take(left + 1).rev().collect()),
+        _ => None,
+    }
+}
+
+/// Logarithm of a feature's density over that at its saddle from which on it is not about to be born.
+const YOUNG: f64 = 0.1;
+
+/// The value of the first point on the side where a feature is absent at which the density is a clear multiple of its
+/// error where the feature was last seen, or of the last point there is; `None` where the next point is such.
+fn clear_again(
+    points: &[&Point],
+    observable: usize,
+    left: usize,
+    seen: &Sighting,
+    is_present_below: bool,
+) -> Option<f64> {
+    let clear = |point: &&&Point| is_clear(&point.densities[observable], &seen.place, WELL);
+    let outward: Vec<&&Point> = if is_present_below {
+        points.iter().skip(left + 1).collect()
+    } else {
+        points.iter().take(left + 1).rev().collect()
+    };
+    let sunk = outward.iter().take_while(|point| !clear(point)).count();
+    let far = outward.get(sunk).or(outward.last())?;
+    (sunk > 0).then_some(far.value)
+}
+
 /// The deciding feature at one point where it is present.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct Sighting {
     value: f64,
-    persistence: f64,
+    place: Vec<f64>,
+    /// Logarithm of the larger of the densities at the feature and at its saddle over the other one.
+    height: f64,
+    /// Its standard error.
     error: f64,
     /// Distance to the nearest other feature, in cells.
     cells_apart: f64,
@@ -96,15 +165,31 @@ fn present_side(
         let detection = &point.detections[observable];
         let feature = deciding_feature(detection, kind, rank)
             .filter(|feature| feature.verdict == Verdict::Present)?;
+        let (height, error) = height(feature);
         Some(Sighting {
             value: point.value,
-            persistence: feature.persistence,
-            error: feature.standard_error,
+            place: feature.position.clone(),
+            height,
+            error,
             cells_apart: cells_apart(feature, detection, &point.densities[observable]),
         })
     };
     indices.into_iter().map_while(seen).collect()
 }
+
+/// Logarithm of the ratio of the densities at a feature and at its saddle, with its standard error. A density below the
+/// error of the difference is taken as that: the ratio is as large at least.
+fn height(feature: &Feature) -> (f64, f64) {
+    let (top, low) = match feature.kind {
+        FeatureKind::Crater => (feature.density + feature.persistence, feature.density),
+        _ => (feature.density, feature.density - feature.persistence),
+    };
+    let low = low.max(feature.standard_error).max(LEAST * top);
+    ((top / low).ln().max(0.0), feature.standard_error / low)
+}
+
+/// Share of a peak that a saddle has at least: rounding.
+const LEAST: f64 = 1e-12;
 
 /// Distance of a feature to the nearest other one that is present, in cells (the largest over the axes).
 fn cells_apart(feature: &Feature, detection: &Detection, density: &EstimatedDensity) -> f64 {
@@ -123,17 +208,23 @@ fn cells_apart(feature: &Feature, detection: &Detection, density: &EstimatedDens
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Births by a line through the nearest points, and by one through the nearest where the feature is well apart.
+/// Births by a line through the nearest points, and by one through the nearest where the feature is well apart; and by
+/// one through points farther from each other, where the first lies farther off than its points reach.
 fn births_of(present: &[Sighting]) -> Vec<(f64, f64, f64)> {
     let nearest = |apart: f64| -> Vec<(f64, f64, f64)> {
         let points = present.iter().filter(|seen| seen.cells_apart >= apart);
         points
-            .map(|seen| (seen.value, seen.persistence, seen.error))
+            .map(|seen| (seen.value, seen.height, seen.error))
             .take(FITTED_POINTS)
             .collect()
     };
     let near = birth(&nearest(0.0));
     let apart = birth(&nearest(WELL_APART));
+    let wide = birth(&spread(present, near.map(|near| near.0)));
+    let near = match (near, wide) {
+        (Some(near), Some(wide)) => Some((wide.0, near.1.min(wide.1), near.2.max(wide.2))),
+        (near, wide) => near.or(wide),
+    };
     match (near, apart) {
         // The zero of the line that the cells do not blur is the better value; the band holds both.
         (Some(near), Some(apart)) => {
@@ -141,6 +232,23 @@ fn births_of(present: &[Sighting]) -> Vec<(f64, f64, f64)> {
         }
         (near, apart) => near.into_iter().chain(apart).collect(),
     }
+}
+
+/// Points that reach as far from the change as a birth is said to be away, or over all that there are, each at least
+/// half as far from the next.
+fn spread(present: &[Sighting], birth: Option<f64>) -> Vec<(f64, f64, f64)> {
+    let Some((first, last)) = present.first().zip(present.last()) else {
+        return Vec::new();
+    };
+    let reach = birth.unwrap_or(last.value) - first.value;
+    let mut kept: Vec<(f64, f64, f64)> = Vec::new();
+    for seen in present {
+        let is_apart = |one: &(f64, f64, f64)| (seen.value - one.0).abs() >= 0.5 * reach.abs();
+        if kept.len() < FITTED_POINTS && kept.last().is_none_or(is_apart) {
+            kept.push((seen.value, seen.height, seen.error));
+        }
+    }
+    kept
 }
 
 /// Birth of a feature with the ends of its uncertainty: `(value, lower, upper)`, from the zero of the line through
@@ -207,6 +315,41 @@ mod tests {
                 "the band from {value} to 0.1 holds the birth at 0"
             );
         }
+    }
+
+    #[test]
+    fn a_birth_is_where_it_is_whatever_the_density_sinks_by() {
+        // A peak of e^{-40 θ} stands above its saddle by the square law from 0 on, and is seen from 0.05 on.
+        let seen = |theta: f64| {
+            let (top, q) = ((-40.0 * theta).exp(), 0.3 * theta * theta);
+            let feature = Feature {
+                kind: FeatureKind::Peak,
+                position: vec![0.0],
+                density: top,
+                persistence: top * -(-q).exp_m1(),
+                standard_error: 1e-9 * top,
+                significance: 2.0,
+                verdict: Verdict::Present,
+                partner: None,
+                errors: crate::topology::FeatureErrors::default(),
+            };
+            let (height, error) = height(&feature);
+            Sighting {
+                value: theta,
+                place: vec![0.0],
+                height,
+                error,
+                cells_apart: 9.0,
+            }
+        };
+        let near = [0.05, 0.0501, 0.0502, 0.0504, 0.0508, 0.1, 0.15, 0.2];
+        let births = births_of(&near.map(seen));
+        assert_eq!(births.len(), 1);
+        let (value, lower, upper) = births[0];
+        assert!(
+            value.abs() < 1e-6 && lower <= 1e-6 && upper >= -1e-6,
+            "{births:?}"
+        );
     }
 
     #[test]

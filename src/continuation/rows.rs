@@ -80,6 +80,11 @@ fn is_one_doubt(first: &Located, second: &Located) -> bool {
     let in_doubt = |row: &Located| row.status() != BifurcationStatus::Located;
     let is_zero =
         |row: &Located| row.zero.is_some() && row.status() != BifurcationStatus::Unconfirmed;
+    // What holds beside a fixed point follows from the equations, whatever comes and goes on the cells.
+    let is_at_rest = |row: &Located| matches!(row.doubts.first(), Some(Doubt::AtRest(_)));
+    if is_at_rest(first) || is_at_rest(second) {
+        return false;
+    }
     let between = second.lower - first.upper;
     // What lies between two bands that reach to the ends of the sweep was seen.
     let reaches_out = |row: &Located| row.doubts.contains(&Doubt::TooLow);

@@ -36,6 +36,9 @@ pub struct Extremum {
     /// The density there, over the axis's unit; ∫ p = 1 over the range. At a natural end that is a peak, where it has
     /// no bound, the density next to it: 2⁻⁴⁰ of a cell away.
     pub density: f64,
+    /// Its natural logarithm, of the density in the inverse of the axis's unit: weak noise makes peaks whose density is
+    /// too small for a number, and that are peaks all the same.
+    pub log_density: f64,
     /// Error of log p (a number without unit) that has gathered from the lower end of the range up to here: that of the
     /// ratio of two densities is the difference of theirs.
     pub gathered_error: f64,

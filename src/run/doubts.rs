@@ -63,6 +63,14 @@ pub fn doubt_in_words(family: &Family, doubt: &Doubt) -> String {
             .to_owned(),
         Doubt::GridCheckOff => unchecked("locate.grid_check is \"off\""),
         Doubt::CheckMissing => unchecked("the sweep ended before, or holds no checks"),
+        Doubt::AtRest(zero) => {
+            let zero = zero.map(|zero| format!("; from infinite it becomes zero there at {}", seven_digits(zero)));
+            let zero = zero.unwrap_or_default();
+            format!(
+                "it is read beside a fixed point that noise leaves alone, where the density goes like a power of the \
+                 distance, which no cells follow{zero}"
+            )
+        }
         Doubt::IndicatorLost => {
             "there its slope can be followed no further: more cells may show it".to_owned()
         }
@@ -97,4 +105,10 @@ fn wider_in_words(wider: &WiderRange) -> String {
         }
         None => format!("a wider range of {name} is needed"),
     }
+}
+
+/// A number in at most seven digits.
+fn seven_digits(value: f64) -> String {
+    let rounded = format!("{value:.6e}").parse::<f64>();
+    rounded.unwrap_or(value).to_string()
 }

@@ -77,7 +77,13 @@ pub(super) fn read(file: &Path) -> Result<Text, Report> {
             .map(drop)
     });
     read.map_err(|error| {
-        let title = format!("cannot read the sweep file `{name}`: {error}");
+        let title = match file.read_link() {
+            Ok(target) if !file.exists() => {
+                let target = target.display();
+                format!("the sweep file `{name}` is a link that leads nowhere, to `{target}`")
+            }
+            _ => format!("cannot read the sweep file `{name}`: {error}"),
+        };
         let remedy = match nearest_file(file) {
             Some(near) => format!("did you mean `{}`?", near.display()),
             None => "check the path; `sweeps/` holds examples".to_owned(),

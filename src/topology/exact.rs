@@ -51,7 +51,7 @@ fn features(profile: &Profile, limits: &Limits) -> Vec<Feature> {
     let mut features = Vec::new();
     while let Some((place, valley)) = highest_valley(&hills) {
         let (left, right) = (&hills[place].peak, &hills[place + 1].peak);
-        let lower = if left.density < right.density {
+        let lower = if left.log_density < right.log_density {
             *left
         } else {
             *right
@@ -59,7 +59,7 @@ fn features(profile: &Profile, limits: &Limits) -> Vec<Feature> {
         let [peak, valley] = pair(&lower, &valley, limits);
         let partner = higher_beside(&profile.extrema, &lower).map(|place| vec![place]);
         features.extend([Feature { partner, ..peak }, valley]);
-        let kept = if left.density < right.density {
+        let kept = if left.log_density < right.log_density {
             hills[place + 1].peak
         } else {
             hills[place].peak
@@ -103,14 +103,16 @@ fn hills(extrema: &[Extremum]) -> Vec<Hill> {
 fn highest_valley(hills: &[Hill]) -> Option<(usize, Extremum)> {
     let between = hills.iter().enumerate().take(hills.len().saturating_sub(1));
     let valleys = between.filter_map(|(place, hill)| Some((place, hill.valley_above?)));
-    valleys.max_by(|a, b| a.1.density.total_cmp(&b.1.density))
+    valleys.max_by(|a, b| a.1.log_density.total_cmp(&b.1.log_density))
 }
 
 /// A peak and the valley where it ends, both as high as the peak stands above the valley.
 fn pair(peak: &Extremum, valley: &Extremum, limits: &Limits) -> [Feature; 2] {
     let height = peak.density - valley.density;
     let gathered = (peak.gathered_error - valley.gathered_error).abs();
-    let judgement = limits.judge_exact(height, peak.density * (gathered + ROUNDING));
+    // In units of the peak's own height: the density of a peak may be too small for a number.
+    let own = -(valley.log_density - peak.log_density).exp_m1();
+    let judgement = limits.judge_exact(own, gathered + ROUNDING);
     let feature = |of: &Extremum, kind: FeatureKind| Feature {
         kind,
         position: vec![of.place],
@@ -133,7 +135,7 @@ fn higher_beside(extrema: &[Extremum], peak: &Extremum) -> Option<f64> {
     let index = extrema.iter().position(|one| one.place == peak.place)?;
     let below = index.checked_sub(1).and_then(|index| extrema.get(index));
     let beside = below.into_iter().chain(extrema.get(index + 1));
-    let higher = beside.max_by(|a, b| a.density.total_cmp(&b.density))?;
+    let higher = beside.max_by(|a, b| a.log_density.total_cmp(&b.log_density))?;
     Some(higher.place)
 }
 
@@ -188,6 +190,7 @@ mod tests {
                 place: index as f64,
                 is_peak: index % 2 == 0,
                 density,
+                log_density: density.ln(),
                 gathered_error: 0.0,
             });
         Profile {
@@ -224,7 +227,7 @@ mod tests {
         let present = peaks.filter(|one| one.verdict == Verdict::Present);
         assert_eq!(present.count(), 1);
         assert!(found(&[]).is_empty());
-        // Densities that are too small for a number are no peaks of their own.
+        // A density that is zero is no peak of its own.
         assert_eq!(found(&[0.9, 0.0, 0.0])[0].verdict, Verdict::Absent);
     }
 }

@@ -448,3 +448,24 @@ fn usage() {
     let similar = "similar argument exists: '--out'";
     refused(GOOD, "a.toml --outt b", &["--outt", similar]);
 }
+
+#[test]
+fn ends_that_no_sweep_has_are_told_in_few_digits() {
+    let told = refused(
+        GOOD,
+        "a.toml sweep.from=-1e308 sweep.to=1e308",
+        &["between -1e308 and 1e308", "sweep.to=1e308"],
+    );
+    assert!(told.lines().all(|line| line.len() < 200), "{told}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_sweep_file_that_is_a_link_to_nowhere_is_told_as_one() {
+    let room = Room::new();
+    std::os::unix::fs::symlink("nowhere.toml", room.path("a.toml")).unwrap();
+    room.refused(
+        "sweep a.toml",
+        &["is a link that leads nowhere, to `nowhere.toml`"],
+    );
+}

@@ -12,6 +12,7 @@
 
 mod formulas;
 mod gibbs;
+mod places;
 mod sampled;
 mod wells;
 

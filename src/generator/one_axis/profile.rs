@@ -83,6 +83,7 @@ impl Partition {
             place: at_end(place),
             is_peak,
             density: logarithm.exp(),
+            log_density: logarithm,
             gathered_error,
         })
         .collect()
@@ -209,7 +210,7 @@ mod tests {
         let rise = 2.0 / 0.64 * h / 3.0 * (a(from) + inner + a(to));
         let [valley, peak] = [&profile.extrema[3], &profile.extrema[2]];
         let (measured, error) = (
-            (valley.density / peak.density).ln(),
+            valley.log_density - peak.log_density,
             valley.gathered_error - peak.gathered_error,
         );
         assert!((measured - rise).abs() < 1e-13 + error, "{measured} {rise}");

@@ -25,6 +25,7 @@ fn profile() -> Profile {
             place: 0.1,
             is_peak: true,
             density: 0.3,
+            log_density: 0.3f64.ln(),
             gathered_error: 1e-12,
         }],
         turns: vec![Turn {

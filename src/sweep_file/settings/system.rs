@@ -209,6 +209,7 @@ fn check_values(reader: &mut Reader<'_>, from: f64, to: f64, points: usize) -> b
         if apart {
             return true;
         }
+        let [from, to] = [from, to].map(in_few_digits);
         let title = format!("no {points} different numbers lie between {from} and {to}");
         (title, "too near to, or too far from, `sweep.from`")
     };
@@ -226,4 +227,12 @@ fn check_values(reader: &mut Reader<'_>, from: f64, to: f64, points: usize) -> b
 pub(super) fn middle_of_map(draft: &Draft) -> Option<(&str, f64)> {
     let (from, to) = (draft.map.from?, draft.map.to?);
     Some((draft.map.parameter.as_deref()?, 0.5 * (from + to)))
+}
+
+/// A number as it may stand in a sentence: with an exponent where it has more digits than a number can have.
+fn in_few_digits(value: f64) -> String {
+    match value.abs() {
+        1e-6..1e17 | 0.0 => value.to_string(),
+        _ => format!("{value:e}"),
+    }
 }

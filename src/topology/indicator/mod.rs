@@ -176,7 +176,8 @@ const BESIDE: usize = 1;
 /// its distance to the second scheme, and of what the solver leaves. Sampled densities have tests of their own.
 pub(crate) fn is_clear(estimated: &EstimatedDensity, place: &[f64], times: f64) -> bool {
     let density = &estimated.density;
-    if estimated.is_noisy() {
+    // Extrema that follow from the equations are there however low the density is.
+    if estimated.is_noisy() || estimated.structure.profile.is_some() {
         return true;
     }
     let second = estimated.variants.second_scheme();

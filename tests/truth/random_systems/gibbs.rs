@@ -8,14 +8,14 @@ use super::formulas::Formula;
 use super::*;
 
 /// V'(x) as a formula and a function.
-struct Slope {
-    family: &'static str,
-    text: String,
-    value: Box<dyn Fn(f64) -> f64>,
-    ends: (f64, f64),
+pub(super) struct Slope {
+    pub(super) family: &'static str,
+    pub(super) text: String,
+    pub(super) value: Box<dyn Fn(f64) -> f64>,
+    pub(super) ends: (f64, f64),
 }
 
-fn slope(dice: &mut Dice, kind: u64) -> Slope {
+pub(super) fn slope(dice: &mut Dice, kind: u64) -> Slope {
     let (b, c) = (dice.between(0.3, 1.2), dice.between(1.1, 2.0));
     match kind {
         0 => Slope {
