@@ -1,5 +1,5 @@
-//! Located and unresolved bifurcations over a diagram, of shape (P), of stability (D) and of spectra (SB): lines, bands,
-//! and labels that do not overlap.
+//! Located and unresolved bifurcations over a diagram, of shape (P), of stability (D) and of spectra (SB): lines,
+//! bands, and labels that do not overlap.
 
 use plotters_backend::text_anchor::HPos;
 
