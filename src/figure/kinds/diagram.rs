@@ -17,7 +17,7 @@ use crate::figure::canvas::style::{MARGIN, PNG_SCALE};
 use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::along::parameter_range;
 use crate::figure::parts::bifurcations::Labels;
-use crate::figure::parts::branches::{Branch, branches};
+use crate::figure::parts::branches::{Branch, branches, located, meet};
 use crate::figure::parts::view::{self, View, middles};
 use crate::figure::parts::{caption, names, table};
 
@@ -25,9 +25,10 @@ use crate::figure::parts::{caption, names, table};
 const MAP: (f64, f64) = (380.0, 250.0);
 const USUAL: f64 = 505.0;
 
-/// Neighbouring densities at most so far apart (Hellinger) are joined: a straight line between them errs by about its
-/// square.
-const ALIKE: f64 = 0.1;
+/// Neighbouring densities are joined where all are at most so far apart (Hellinger): a straight line between two errs
+/// by about the square of that. Else every value has its column, so that no part of a figure looks more certain than
+/// another.
+const ALIKE: f64 = 0.2;
 
 /// A diagram an observed marginal.
 pub(super) const KIND: Kind = Kind {
@@ -57,7 +58,8 @@ fn draw(result: &SweepResult, (observable, axis): (usize, usize), print: &Print<
     let above = labels.height().max(ColourBar::above());
     let map = Rectangle::new((left, heading.height() + above), (wide, high));
     let kinds = [FeatureKind::Peak, FeatureKind::Valley];
-    let followed = kinds.map(|kind| branches(points, observable, kind, window));
+    let mut followed = kinds.map(|kind| branches(points, observable, kind, window));
+    meet(&mut followed, &located(result, watched), points, window);
     let entries = entries(points, observable, &followed, &labels);
     let legend = Legend::new(look, entries, width - 2.0 * MARGIN);
     let below = map.bottom() + Scale::below();
@@ -79,7 +81,8 @@ fn draw(result: &SweepResult, (observable, axis): (usize, usize), print: &Print<
         family.parameter()
     );
     let between = caption::between_cells(result, |one| one == watched);
-    let caption = caption::of_sweep(result, seen, &[between, caption::bifurcations(result)]);
+    let marks = format!("{}{}", caption::bifurcations(result), caption::floor(look));
+    let caption = caption::of_sweep(result, seen, &[between, marks]);
     let points: Vec<&Point> = points.iter().collect();
     let table = table::of_marginals(result, (&[observable], &points), |one, _| table::cells(one));
     Some(Figure::new(&page, caption, table))
@@ -107,15 +110,23 @@ pub(super) fn hatch_column(page: &Page, panel: &Panel, edges: &[f64], window: (f
 struct Columns<'a> {
     points: &'a [Point],
     shown: Vec<Option<View<'a>>>,
+    /// Whether neighbours are joined.
+    are_joined: bool,
 }
 
 impl<'a> Columns<'a> {
     fn new(points: &'a [Point], observable: usize) -> Self {
         let shown = points.iter();
         let shown = shown.map(|point| Some(View::new(view::density(point, observable)?)));
+        let shown: Vec<Option<View<'_>>> = shown.collect();
+        let pairs = shown.windows(2).zip(&points[1.min(points.len())..]);
+        let mut joinable = pairs.filter(|(pair, _)| pair.iter().all(Option::is_some));
+        let are_joined =
+            joinable.all(|(_, point)| point.distance.is_some_and(|distance| distance <= ALIKE));
         Self {
             points,
-            shown: shown.collect(),
+            shown,
+            are_joined,
         }
     }
 
@@ -189,8 +200,8 @@ impl<'a> Columns<'a> {
         view(below)?;
         view(above)?;
         let (from, to) = (self.points.get(below)?, self.points.get(above)?);
-        let is_near = to.distance.is_some_and(|distance| distance <= ALIKE);
-        is_near.then(|| (place - from.value) / (to.value - from.value))
+        self.are_joined
+            .then(|| (place - from.value) / (to.value - from.value))
     }
 }
 

@@ -7,7 +7,7 @@ use super::{Drawn, Kind};
 use crate::figure::canvas::style::Stroke;
 use crate::figure::figures::Print;
 use crate::figure::parts::along::{self, Curve, Track};
-use crate::figure::parts::branches::{Branch, branches};
+use crate::figure::parts::branches::{Branch, branches, located, meet};
 use crate::figure::parts::table::{self, number as number_of};
 use crate::figure::parts::{caption, names, view};
 
@@ -40,8 +40,11 @@ fn draw(result: &SweepResult, (number, axis): (usize, usize), print: &Print<'_>)
         (FeatureKind::Valley, "valley", 1),
     ];
     let (mut places, mut heights) = (Vec::new(), Vec::new());
-    for (kind, name, colour) in kinds {
-        for branch in branches(&result.points, number, kind, window) {
+    let mut followed = kinds.map(|(kind, ..)| branches(&result.points, number, kind, window));
+    let changes = located(result, watched);
+    meet(&mut followed, &changes, &result.points, window);
+    for ((_, name, colour), found) in kinds.into_iter().zip(followed) {
+        for branch in found {
             let curve = |places: Vec<(f64, f64)>| Curve {
                 name: name.to_owned(),
                 stroke: Stroke::curve(colour),

@@ -1,6 +1,7 @@
 //! Branches of peaks and valleys along a parameter: features of neighbouring points that belong together.
 
-use crate::continuation::Point;
+use crate::continuation::{BifurcationStatus, Point, SweepResult};
+use crate::density::Observable;
 use crate::topology::{Feature, FeatureKind, Verdict};
 
 /// Largest step of a branch between near points, as a share of the window; longer ones are jumps.
@@ -14,6 +15,13 @@ const FARTHEST: f64 = 0.25;
 const CLEAR: f64 = 2.0;
 /// A step that no eye sees, as a share of the window.
 const STILL: f64 = 0.005;
+
+/// Points by which a branch is drawn to where it meets another.
+const STEPS: usize = 12;
+/// Powers of the distance to a change with which places may go to where they meet: a root at a smooth change, about a
+/// straight line at a kink.
+const POWERS: (f64, f64) = (0.35, 1.1);
+const ROOT: f64 = 0.5;
 
 /// A branch: one or more places, in ascending parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -109,6 +117,134 @@ pub(crate) fn branches(
     finished
 }
 
+/// The values at which the shape of an observable was located to change.
+pub(crate) fn located(result: &SweepResult, observable: Observable) -> Vec<f64> {
+    let rows = result.bifurcations();
+    let own = rows
+        .filter(|row| row.observable == observable && row.status() == BifurcationStatus::Located);
+    own.map(|row| row.value).collect()
+}
+
+/// The end of a branch beside a change.
+#[derive(Debug, Clone, Copy)]
+struct End {
+    /// Which of the lists of branches, and its number there.
+    branch: (usize, usize),
+    kind: FeatureKind,
+    /// Parameter and coordinate.
+    place: (f64, f64),
+    /// The place before it, going away from the change.
+    before: Option<(f64, f64)>,
+    is_below: bool,
+}
+
+impl End {
+    /// The way from it to where it meets others: as a power of the distance to the change, which its last two places
+    /// tell.
+    fn way(&self, meeting: (f64, f64)) -> Vec<(f64, f64)> {
+        let off = self.place.1 - meeting.1;
+        let power = self.before.and_then(|before| {
+            let times = (before.1 - meeting.1) / off;
+            let longer = (before.0 - meeting.0) / (self.place.0 - meeting.0);
+            (times > 1.0 && longer > 1.0).then(|| times.ln() / longer.ln())
+        });
+        let power = power.unwrap_or(ROOT).clamp(POWERS.0, POWERS.1);
+        let step = |number: usize| {
+            let share = number as f64 / STEPS as f64;
+            let value = self.place.0 + share * (meeting.0 - self.place.0);
+            (value, meeting.1 + off * (1.0 - share).powf(power))
+        };
+        (1..=STEPS).map(step).collect()
+    }
+}
+
+/// The ends of branches at the values next to a change.
+fn ends(branches: &[Vec<Branch>; 2], (below, above): (f64, f64)) -> Vec<End> {
+    let mut ends = Vec::new();
+    for (list, found) in branches.iter().enumerate() {
+        for (number, branch) in found.iter().enumerate() {
+            let places = &branch.places;
+            let end = |place: (f64, f64), before: Option<&(f64, f64)>, is_below| End {
+                branch: (list, number),
+                kind: branch.kind,
+                place,
+                before: before.copied(),
+                is_below,
+            };
+            if let Some(&last) = places.last().filter(|last| last.0 == below) {
+                let before = places.len().checked_sub(2).map(|number| &places[number]);
+                ends.push(end(last, before, true));
+            } else if let Some(&first) = places.first().filter(|first| first.0 == above) {
+                ends.push(end(first, places.get(1), false));
+            }
+        }
+    }
+    ends.sort_by(|a, b| a.place.1.total_cmp(&b.place.1));
+    ends
+}
+
+/// Where the ends on one side of a change meet, with those that do: two of one kind meet the other kind between them,
+/// neighbours of different kinds meet half-way. Empty where it is not clear.
+fn meetings(ends: &[End]) -> Vec<(f64, Vec<End>)> {
+    let alternate = ends.windows(2).all(|pair| pair[0].kind != pair[1].kind);
+    match ends.len() {
+        3 if alternate => vec![(ends[1].place.1, ends.to_vec())],
+        2 | 4 if alternate || ends.len() == 4 => {
+            let pairs = ends.chunks(2).filter(|pair| pair[0].kind != pair[1].kind);
+            let middle = |pair: &[End]| 0.5 * (pair[0].place.1 + pair[1].place.1);
+            pairs.map(|pair| (middle(pair), pair.to_vec())).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Leads the branches of peaks and of valleys that end beside located changes on to where these are. Between computed
+/// values a diagram would end them short of the change that it marks.
+pub(crate) fn meet(
+    branches: &mut [Vec<Branch>; 2],
+    changes: &[f64],
+    points: &[Point],
+    window: (f64, f64),
+) {
+    let farthest = FARTHEST * (window.1 - window.0);
+    for &change in changes {
+        let values = || points.iter().map(|point| point.value);
+        let below = values().filter(|value| *value < change);
+        let above = values().filter(|value| *value > change);
+        let beside = (
+            below.fold(f64::NAN, f64::max),
+            above.fold(f64::NAN, f64::min),
+        );
+        let (lower, upper): (Vec<End>, Vec<End>) = ends(branches, beside)
+            .into_iter()
+            .partition(|end| end.is_below);
+        let (many, few) = if lower.len() > upper.len() {
+            (lower, upper)
+        } else {
+            (upper, lower)
+        };
+        for (place, mut group) in meetings(&many) {
+            let near = |end: &&End| (end.place.1 - place).abs() <= farthest;
+            if !group.iter().all(|end| near(&end)) {
+                continue;
+            }
+            // Three become one of the kind of the outer two.
+            if group.len() == 3 && few.len() == 1 {
+                group.extend(few.iter().filter(near).copied());
+            }
+            for end in group {
+                let places = &mut branches[end.branch.0][end.branch.1].places;
+                let way = end.way((change, place));
+                if end.is_below {
+                    places.extend(way);
+                } else {
+                    places.splice(0..0, way.into_iter().rev());
+                }
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -171,6 +307,42 @@ mod tests {
         let jump = |i: i32| point(f64::from(i), Some(&[if i < 15 { 0.0 } else { 0.4 }]));
         let many: Vec<Point> = (0..31).map(jump).collect();
         assert_eq!(branches(&many, 0, FeatureKind::Peak, (-1.0, 1.0)).len(), 2);
+    }
+
+    #[test]
+    fn branches_meet_where_the_change_is() {
+        // Peaks at ± √(-value/4) below zero and at zero above, at values ± 0.1, ± 0.3, …; a valley between the two.
+        let values: Vec<f64> = (-5..5).map(|i| 0.1 + 0.2 * f64::from(i)).collect();
+        let peak = |value: f64| (-0.25 * value).max(0.0).sqrt();
+        let of = |value: &f64| match *value < 0.0 {
+            true => point(*value, Some(&[-peak(*value), peak(*value)])),
+            false => point(*value, Some(&[0.0])),
+        };
+        let points: Vec<Point> = values.iter().map(of).collect();
+        let window = (-1.0, 1.0);
+        let valley = Branch {
+            kind: FeatureKind::Valley,
+            places: values[..5].iter().map(|value| (*value, 0.0)).collect(),
+        };
+        let peaks = branches(&points, 0, FeatureKind::Peak, window);
+        let mut all = [peaks, vec![valley]];
+        meet(&mut all, &[0.0], &points, window);
+        assert_eq!(all[0].len(), 3);
+        for branch in all.iter().flatten() {
+            let met = branch
+                .places
+                .iter()
+                .any(|place| place.0.abs() < 1e-12 && place.1 == 0.0);
+            assert!(met, "{branch:?}");
+            assert!(branch.places.is_sorted_by(|a, b| a.0 < b.0), "{branch:?}");
+            for place in branch
+                .places
+                .iter()
+                .filter(|place| branch.kind == FeatureKind::Peak && place.0 < 0.0)
+            {
+                assert!((place.1.abs() - peak(place.0)).abs() < 1e-9, "{place:?}");
+            }
+        }
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use crate::continuation::{BifurcationStatus, Label, Located, SweepResult};
 use crate::density::Observable;
+use crate::figure::canvas::look::{DECADES, Look};
 use crate::figure::canvas::symbols;
 use crate::space::Axis;
 use crate::system::Family;
@@ -16,6 +17,26 @@ pub(crate) fn of_sweep(result: &SweepResult, seen: String, marked: &[String]) ->
         .map(String::as_str)
         .collect();
     format!("{} {}\n", parts.join(" "), version())
+}
+
+/// At which shares of a maximum contours are drawn.
+pub(crate) fn contours(look: &Look) -> &'static str {
+    if look.is_logarithmic {
+        "0.1, 1, 10 and 50 %"
+    } else {
+        "10, 30, 50, 70 and 90 %"
+    }
+}
+
+/// What is said of logarithmic colours, after another sentence; nothing of linear ones.
+pub(crate) fn floor(look: &Look) -> String {
+    if look.is_logarithmic {
+        format!(
+            " Colours are logarithmic; what is below 10^-{DECADES} of the largest density has the colour of the floor."
+        )
+    } else {
+        String::new()
+    }
 }
 
 /// What computed it.

@@ -9,6 +9,7 @@ pub(super) mod inset;
 pub(super) mod joint_map;
 pub(super) mod joint_sheet;
 pub(super) mod names;
+pub(super) mod pages;
 pub(super) mod region_room;
 pub(super) mod table;
 pub(super) mod view;

@@ -10,7 +10,7 @@ use super::kind::{
 use super::{Key, KeyDefault};
 use crate::continuation::curve::CurveOptions;
 use crate::continuation::map::MapOptions;
-use crate::figure::{ColourMap, Format, Ground, Typeface};
+use crate::figure::{ColourMap, ColourScale, Format, Ground, Typeface};
 use crate::generator::AdvectiveScheme;
 use crate::method::{Correction, DerivedMeasure, Estimator};
 use crate::sampling::Integrator;
@@ -274,6 +274,8 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "Typeface: DejaVu Sans or DejaVu Serif."),
     key("figures.style.colours", Kind::Choice(ColourMap::words), OfOptions, always!(figures.style.colours),
         "Colours of maps and surfaces: perceptually uniform, and safe for colour-blind readers; `grey` runs from white to black."),
+    key("figures.style.scale", Kind::Choice(ColourScale::words), OfOptions, always!(figures.style.scale),
+        "Whether colours of heat maps follow the density in proportion or by decades, four of them below the largest density."),
     key("figures.style.ground", Kind::Choice(Ground::words), OfOptions, always!(figures.style.ground),
         "Light for print, dark for screens."),
     key("figures.style.title", Kind::Choice(switch), OfOptions, always!(figures.style.title),
