@@ -222,7 +222,7 @@ def from_disk(driver, page, axe, folder, images):
     dark = browser.run("return getComputedStyle(document.body).backgroundColor")
     assert max(map(int, re.findall(r"\d+", dark)[:3])) < 60, dark
     is_named(browser)
-    laid = "return [...document.querySelectorAll('#equations math')].filter((one) => one.getBoundingClientRect().width > 30 && one.ariaLabel).length"
+    laid = "return [...document.querySelectorAll('#equations .equation')].filter((one) => one.getBoundingClientRect().width > 30 && one.ariaLabel).length"
     assert browser.run(laid) == 3, "the equations are not typeset"
     assert browser.run("return document.querySelector('#equations msub').textContent") == "fc"
     assert not browser.run("return document.getElementById('paths').checkVisibility()"), "a saved page holds no equations that a path could follow"

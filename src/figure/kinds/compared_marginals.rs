@@ -115,7 +115,7 @@ pub(super) fn rows(comparison: &Comparison, is_shown: impl Fn(&Observable) -> bo
         }
     }
     let columns = [
-        family.parameter(),
+        caption::parameter(family),
         "method",
         "observable",
         "coordinate",

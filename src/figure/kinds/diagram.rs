@@ -1,7 +1,7 @@
 //! The P-bifurcation diagram of a marginal: its density over the parameter as a heat map, the branches of
 //! its peaks and valleys, and the labelled bifurcations.
 
-use crate::continuation::{Point, PointStatus, SweepResult};
+use crate::continuation::{LocateOptions, Point, PointStatus, SweepResult};
 use crate::density::Density;
 use crate::space::Axis;
 use crate::topology::FeatureKind;
@@ -25,10 +25,6 @@ use crate::figure::parts::{caption, names, table};
 const MAP: (f64, f64) = (380.0, 250.0);
 const USUAL: f64 = 505.0;
 
-/// Neighbouring densities are joined where all are at most so far apart (Hellinger): a straight line between two errs
-/// by about the square of that. Else every value has its column, so that no part of a figure looks more certain than
-/// another.
-const ALIKE: f64 = 0.2;
 
 /// A diagram an observed marginal.
 pub(super) const KIND: Kind = Kind {
@@ -78,7 +74,7 @@ fn draw(result: &SweepResult, (observable, axis): (usize, usize), print: &Print<
     let seen = format!(
         "Steady-state marginal density {} over {} (colours), with its peaks (solid) and valleys (dashed).",
         caption::density(family, watched),
-        family.parameter()
+        caption::parameter(family)
     );
     let between = caption::between_cells(result, |one| one == watched);
     let marks = format!("{}{}", caption::bifurcations(result), caption::floor(look));
@@ -122,7 +118,7 @@ impl<'a> Columns<'a> {
         let pairs = shown.windows(2).zip(&points[1.min(points.len())..]);
         let mut joinable = pairs.filter(|(pair, _)| pair.iter().all(Option::is_some));
         let are_joined =
-            joinable.all(|(_, point)| point.distance.is_some_and(|distance| distance <= ALIKE));
+            joinable.all(|(_, point)| point.distance.is_some_and(|distance| distance <= most));
         Self {
             points,
             shown,

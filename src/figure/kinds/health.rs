@@ -7,6 +7,7 @@ use super::{Drawn, Kind, Sketch};
 use crate::figure::canvas::style::Stroke;
 use crate::figure::figures::Print;
 use crate::figure::parts::along::{self, Curve, Track};
+use crate::figure::parts::caption;
 use crate::figure::parts::table::{self, number as number_of};
 
 /// Height of a panel, in pixels.
@@ -114,8 +115,9 @@ fn draw(result: &SweepResult, print: &Print<'_>) -> Drawn {
     let tracks: Vec<Track> = NUMBERS.iter().filter_map(track).collect();
     let parameter = result.subject.family.parameter();
     let seen = format!(
-        "How well each value of {parameter} was solved: what is left of the equation, what leaves the domain, and the Hellinger \
-         distance between neighbouring densities, times the usual step of the parameter over the one between them."
+        "How well each value of {} was solved: what is left of the equation, what leaves the domain, and the Hellinger \
+         distance between neighbouring densities, times the usual step of the parameter over the one between them.",
+        caption::parameter(&result.subject.family)
     );
     let columns = NUMBERS.map(|(title, ..)| title.replace(' ', "_"));
     let columns: Vec<&str> = [parameter, "status"]

@@ -88,7 +88,7 @@ fn draw(result: &SweepResult, (number, axis): (usize, usize), print: &Print<'_>)
     let seen = format!(
         "Places and heights of the peaks (solid) and valleys (dashed) of the steady-state marginal density {} over {}.",
         caption::density(family, watched),
-        family.parameter()
+        caption::parameter(family)
     );
     let texts = (seen, rows(result, number));
     along::draw((result, print), Some(watched), (&tracks, HEIGHT), texts)

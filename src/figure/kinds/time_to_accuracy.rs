@@ -75,7 +75,10 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     let value = symbols::rounded(accuracy.value)
         .to_string()
         .replace('-', "−");
-    let title = format!("{title}{separator}at {} = {value}", family.parameter());
+    let title = format!(
+        "{title}{separator}at {} = {value}",
+        caption::parameter(family)
+    );
     let heading = Heading::new(look, &title, width);
     let shown = |method: &Method| accuracy.points.iter().any(|one| one.method == *method);
     let methods = Method::ALL.into_iter().enumerate();
@@ -125,7 +128,7 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
         "Total variation of {} at {} = {} to {reference}, over the seconds that each method took; bars are two standard errors, an arrow \
          says that zero is within them.",
         caption::density(family, accuracy.observable),
-        family.parameter(),
+        caption::parameter(family),
         caption::number(accuracy.value),
     );
     let rows = accuracy.points.iter().map(|point| {
