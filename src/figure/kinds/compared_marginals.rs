@@ -115,7 +115,7 @@ pub(super) fn rows(comparison: &Comparison, is_shown: impl Fn(&Observable) -> bo
         }
     }
     let columns = [
-        caption::parameter(family),
+        family.parameter(),
         "method",
         "observable",
         "coordinate",

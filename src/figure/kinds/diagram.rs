@@ -25,7 +25,6 @@ use crate::figure::parts::{caption, names, table};
 const MAP: (f64, f64) = (380.0, 250.0);
 const USUAL: f64 = 505.0;
 
-
 /// A diagram an observed marginal.
 pub(super) const KIND: Kind = Kind {
     names: &["diagram"],
@@ -117,6 +116,10 @@ impl<'a> Columns<'a> {
         let shown: Vec<Option<View<'_>>> = shown.collect();
         let pairs = shown.windows(2).zip(&points[1.min(points.len())..]);
         let mut joinable = pairs.filter(|(pair, _)| pair.iter().all(Option::is_some));
+        // What a sweep accepts between neighbours is what may be joined: a straight line between two errs by about the
+        // square of their distance (Hellinger). Where one step is longer every value has its column, so that no part of
+        // a figure looks more certain than another.
+        let most = LocateOptions::default().largest_distance;
         let are_joined =
             joinable.all(|(_, point)| point.distance.is_some_and(|distance| distance <= most));
         Self {

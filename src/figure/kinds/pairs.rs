@@ -2,7 +2,7 @@
 //! them.
 
 use super::Kind;
-use super::surface::{COARSE, LOWEST, draw_surface, ranges};
+use super::surface::{COARSE, draw_surface, lowered, ranges};
 use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::frame::Scale;
 use crate::figure::canvas::look::Look;
@@ -52,7 +52,6 @@ struct Row {
 impl Row {
     /// `left` and `right` are what stands beside the map; the row is `given` wide, or as wide as its own.
     fn new(given: Option<f64>, tall: f64, (left, right): (f64, f64)) -> Self {
-        let tall = tall.clamp(LOWEST, 1.0);
         let Some(width) = given else {
             let (surface, map) = (tall * SURFACE, tall * MAP);
             return Self {
@@ -90,6 +89,7 @@ impl<'a> Rows<'a> {
     /// Rows that are `given` wide, or as wide as their own.
     fn new(look: &Look, joint: &'a Joint<'_>, given: Option<f64>) -> Self {
         let (found, (x, y)) = (&joint.found, joint.window);
+        let tall = lowered(look, found.len());
         let [first, second, density] = &joint.titles;
         let bars = |high: f64| {
             let bar =
@@ -103,10 +103,10 @@ impl<'a> Rows<'a> {
         let vertical = |high: f64| Scale::vertical(look, y, high, second);
         // What stands beside the map hardly depends on its height: a first round measures it.
         let beside = (vertical(MAP).left(), right(&bars(MAP)));
-        let high = Row::new(given, look.tall, beside).map.1;
+        let high = Row::new(given, tall, beside).map.1;
         let (up, bars) = (vertical(high), bars(high));
         let right = right(&bars);
-        let row = Row::new(given, look.tall, (up.left(), right));
+        let row = Row::new(given, tall, (up.left(), right));
         let row = Row {
             map: (row.map.0, high),
             ..row

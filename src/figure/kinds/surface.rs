@@ -21,7 +21,7 @@ const NARROWEST: f64 = 250.0;
 /// The narrowest one where wider ones are higher than a page together.
 const NARROWEST_OF_MANY: f64 = 188.0;
 /// The lowest ones on a sheet, as a share of their usual size.
-pub(super) const LOWEST: f64 = 0.72;
+const LOWEST: f64 = 0.72;
 /// The widest one, however wide the page.
 const WIDEST: f64 = 560.0;
 /// Room of the line above a surface.
@@ -106,7 +106,7 @@ fn draw_sheet(joint: &Joint<'_>, print: &Print<'_>) -> Option<Page> {
     if rows(columns) * (ABOVE + high(column) + MARGIN) > look.greatest_height {
         (columns, column) = arrangement(look, (found.len(), NARROWEST_OF_MANY));
     }
-    let wide = column * look.tall.clamp(LOWEST, 1.0);
+    let wide = column * lowered(look, found.len());
     let high = high(wide);
     let width = look.page.unwrap_or(columns as f64 * column + 2.0 * MARGIN);
     let heading = Heading::new(look, print.title, width);
@@ -123,6 +123,13 @@ fn draw_sheet(joint: &Joint<'_>, print: &Print<'_>) -> Option<Page> {
         draw_surface(&page, rect, joint, (found, COARSE));
     }
     Some(page)
+}
+
+/// By how much surfaces on a page of so many are smaller than usual: several are not lower than what can be read, and
+/// move to further pages instead.
+pub(super) fn lowered(look: &Look, count: usize) -> f64 {
+    let least = if count > 1 { LOWEST } else { 0.0 };
+    look.tall.clamp(least, 1.0)
 }
 
 /// Columns of a sheet of so many surfaces, none narrower than so much where the page is given, and the width of each.

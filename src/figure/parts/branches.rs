@@ -18,6 +18,8 @@ const STILL: f64 = 0.005;
 
 /// Points by which a branch is drawn to where it meets another.
 const STEPS: usize = 12;
+/// Values nearer to a change than this share of the longest step were added to narrow it.
+const NEAR: f64 = 0.35;
 /// Powers of the distance to a change with which places may go to where they meet: a root at a smooth change, about a
 /// straight line at a kink.
 const POWERS: (f64, f64) = (0.35, 1.1);
@@ -158,29 +160,68 @@ impl End {
     }
 }
 
-/// The ends of branches at the values next to a change.
-fn ends(branches: &[Vec<Branch>; 2], (below, above): (f64, f64)) -> Vec<End> {
-    let mut ends = Vec::new();
-    for (list, found) in branches.iter().enumerate() {
-        for (number, branch) in found.iter().enumerate() {
-            let places = &branch.places;
-            let end = |place: (f64, f64), before: Option<&(f64, f64)>, is_below| End {
-                branch: (list, number),
-                kind: branch.kind,
-                place,
-                before: before.copied(),
-                is_below,
-            };
-            if let Some(&last) = places.last().filter(|last| last.0 == below) {
-                let before = places.len().checked_sub(2).map(|number| &places[number]);
-                ends.push(end(last, before, true));
-            } else if let Some(&first) = places.first().filter(|first| first.0 == above) {
-                ends.push(end(first, places.get(1), false));
+/// What lies about a change: its value, and how far from it the ends of branches are looked for.
+#[derive(Debug, Clone, Copy)]
+struct Around {
+    change: f64,
+    gap: f64,
+}
+
+impl Around {
+    /// Whether a value is one of those that were added to narrow the change.
+    fn is_near(&self, value: f64) -> bool {
+        (value - self.change).abs() <= NEAR * self.gap
+    }
+
+    /// Whether a branch holds nothing but such values: pieces that no link has joined.
+    fn is_piece(&self, branch: &Branch) -> bool {
+        branch.places.iter().all(|place| self.is_near(place.0))
+    }
+
+    /// Whether a branch lies on one side, but for such values.
+    fn is_on_side(&self, branch: &Branch, is_below: bool) -> bool {
+        let is_here = |value: f64| (value < self.change) == is_below || self.is_near(value);
+        branch.places.iter().all(|place| is_here(place.0))
+    }
+
+    /// The places of a branch on one side, the nearest one first.
+    fn on_side(&self, branch: &Branch, is_below: bool) -> Vec<(f64, f64)> {
+        let places = branch.places.iter().copied();
+        let mut own: Vec<(f64, f64)> = places
+            .filter(|place| place.0 != self.change && (place.0 < self.change) == is_below)
+            .collect();
+        if is_below {
+            own.reverse();
+        }
+        own
+    }
+
+    /// The ends of branches on one side, in the order of their coordinates.
+    fn ends(&self, branches: &[Vec<Branch>; 2], is_below: bool) -> Vec<End> {
+        let mut ends = Vec::new();
+        for (list, found) in branches.iter().enumerate() {
+            for (number, branch) in found.iter().enumerate() {
+                if self.is_piece(branch) || !self.is_on_side(branch, is_below) {
+                    continue;
+                }
+                let places = self.on_side(branch, is_below);
+                let Some(&place) = places.first() else {
+                    continue;
+                };
+                if (place.0 - self.change).abs() <= self.gap {
+                    ends.push(End {
+                        branch: (list, number),
+                        kind: branch.kind,
+                        place,
+                        before: places.get(1).copied(),
+                        is_below,
+                    });
+                }
             }
         }
+        ends.sort_by(|a, b| a.place.1.total_cmp(&b.place.1));
+        ends
     }
-    ends.sort_by(|a, b| a.place.1.total_cmp(&b.place.1));
-    ends
 }
 
 /// Where the ends on one side of a change meet, with those that do: two of one kind meet the other kind between them,
@@ -199,7 +240,8 @@ fn meetings(ends: &[End]) -> Vec<(f64, Vec<End>)> {
 }
 
 /// Leads the branches of peaks and of valleys that end beside located changes on to where these are. Between computed
-/// values a diagram would end them short of the change that it marks.
+/// values, and where features are too near to each other to be told apart, a diagram would end them short of the change
+/// that it marks.
 pub(crate) fn meet(
     branches: &mut [Vec<Branch>; 2],
     changes: &[f64],
@@ -207,22 +249,17 @@ pub(crate) fn meet(
     window: (f64, f64),
 ) {
     let farthest = FARTHEST * (window.1 - window.0);
+    let steps = points.windows(2).map(|pair| pair[1].value - pair[0].value);
+    let gap = 1.01 * steps.fold(0.0, f64::max);
     for &change in changes {
-        let values = || points.iter().map(|point| point.value);
-        let below = values().filter(|value| *value < change);
-        let above = values().filter(|value| *value > change);
-        let beside = (
-            below.fold(f64::NAN, f64::max),
-            above.fold(f64::NAN, f64::min),
-        );
-        let (lower, upper): (Vec<End>, Vec<End>) = ends(branches, beside)
-            .into_iter()
-            .partition(|end| end.is_below);
+        let around = Around { change, gap };
+        let [lower, upper] = [true, false].map(|is_below| around.ends(branches, is_below));
         let (many, few) = if lower.len() > upper.len() {
             (lower, upper)
         } else {
             (upper, lower)
         };
+        let mut met = Vec::new();
         for (place, mut group) in meetings(&many) {
             let near = |end: &&End| (end.place.1 - place).abs() <= farthest;
             if !group.iter().all(|end| near(&end)) {
@@ -233,14 +270,21 @@ pub(crate) fn meet(
                 group.extend(few.iter().filter(near).copied());
             }
             for end in group {
-                let places = &mut branches[end.branch.0][end.branch.1].places;
-                let way = end.way((change, place));
-                if end.is_below {
-                    places.extend(way);
-                } else {
-                    places.splice(0..0, way.into_iter().rev());
-                }
+                let branch = &mut branches[end.branch.0][end.branch.1];
+                let mut places = around.on_side(branch, end.is_below);
+                places.extend(end.way((change, place)));
+                places.sort_by(|a, b| a.0.total_cmp(&b.0));
+                branch.places = places;
             }
+            met.push(place);
+        }
+        // The places of pieces are on the ways now.
+        let is_on_way = |branch: &Branch| {
+            let is_near = |one: &(f64, f64)| met.iter().any(|at| (one.1 - at).abs() <= farthest);
+            around.is_piece(branch) && branch.places.iter().all(is_near)
+        };
+        for list in branches.iter_mut() {
+            list.retain(|branch| !is_on_way(branch));
         }
     }
 }
