@@ -146,8 +146,13 @@ const crossings = (plot, { centres: [xs, ys] }, values, level) =>
   contour(values, xs.map(plot.x.to), ys.map(plot.y.to), level);
 
 const drawMarks = (plot, found, size) => {
-  for (const mark of found?.features ?? []) {
+  const features = found?.features ?? [];
+  const peaks = features.filter(({ kind }) => kind === "peak").map(({ at }) => plot.place(at));
+  // On a rim that is nearly level a saddle is found anywhere, and its sign must not hide that of a peak.
+  const hides = ([x, y]) => peaks.some(([px, py]) => Math.hypot(px - x, py - y) < 0.9 * size);
+  for (const mark of features) {
     const [x, y] = plot.place(mark.at);
+    if (mark.kind === "valley" && hides([x, y])) continue;
     drawMark(plot.pen, mark.kind, x, y, { colour: "#fff", halo: "#000", radius: 0.34 * size, alpha: mark.certain ? 1 : 0.5 });
   }
 };
