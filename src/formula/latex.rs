@@ -89,6 +89,7 @@ pub(crate) fn escape(text: &str) -> String {
 }
 
 /// A text whose names stand for symbols, such as `f_c`: these as mathematics, the rest as [`escape`] has it.
+#[cfg(feature = "figures")]
 pub(crate) fn with_symbols(text: &str) -> String {
     let is_of_name = |c: char| c.is_alphanumeric() || c == '_';
     let mut made = String::new();
@@ -168,6 +169,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg(feature = "figures")]
     fn names_of_symbols_become_mathematics() {
         assert_eq!(
             with_symbols("p(x, ẋ) at f_c = -0.02, with σ² = 5 %"),

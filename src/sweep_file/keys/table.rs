@@ -259,7 +259,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("figures.at", Kind::List(&Kind::Number(ANY)), Rule("both ends of the sweep and two points between"), optional!(figures_at),
         "Parameter values at which joint densities and marginals are drawn, inside the sweep."),
     key("figures.formats", Kind::List(&Kind::Choice(Format::words)), OfOptions, always!(figures.formats),
-        "File formats of the figures; `csv` writes the numbers behind each, `txt` its caption."),
+        "File formats of the figures; `csv` writes the numbers behind each, `txt` its caption, `tex` the same for LaTeX."),
     key("figures.draw", Kind::List(&Kind::Text), OfOptions, optional!(figures.draw),
         "Figures that are drawn: kinds, such as `diagram`, or single ones, such as `diagram_x`; `all` for every one."),
     key("figures.style.width", Kind::Width, OfOptions, always!(figures.style.width),
