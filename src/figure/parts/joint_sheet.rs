@@ -10,8 +10,8 @@ use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::frame::Scale;
 use crate::figure::canvas::letters;
 use crate::figure::canvas::look::{Look, on_heat};
-use crate::figure::canvas::page::{Page, Rectangle, small};
-use crate::figure::canvas::style::{MARGIN, TEXT, TICK_TEXT};
+use crate::figure::canvas::page::{Page, Rectangle, Shape, small};
+use crate::figure::canvas::style::{Colour, MARGIN, TEXT, TICK_TEXT};
 use crate::figure::canvas::symbols;
 
 /// Side of a map on a sheet.
@@ -140,12 +140,22 @@ fn with_lines(
     (sheet, lines)
 }
 
-/// Writes the largest density into the lower right corner of a map whose colours it scales.
+/// Writes the largest density into the lower right corner of a map whose colours it scales, on the colour of no density:
+/// logarithmic colours may be dark there.
 fn write_maximum(page: &Page, map: Rectangle, found: &JointPoint<'_>) {
+    let look = page.look();
     let largest = symbols::rounded_to(found.shown.largest, DIGITS);
     let text = format!("max {}", symbols::value(largest));
-    let place = (map.right() - 4.0, map.bottom() - 0.6 * TICK_TEXT - 1.0);
-    page.text(place, small(text, HPos::Right, on_heat(page.look(), 0.0)));
+    let wide = letters::text_width(look, &text, TICK_TEXT, false) + 6.0;
+    let corner = (
+        map.right() - wide - 1.0,
+        map.bottom() - 1.3 * TICK_TEXT - 1.0,
+    );
+    let ground = Rectangle::new(corner, (wide, 1.3 * TICK_TEXT));
+    let empty = Colour::fixed(look.colours.colour(0.0)).at(0.8);
+    page.draw(&ground.corners(), Shape::Area(empty));
+    let place = (ground.right() - 3.0, ground.top + 0.5 * ground.height);
+    page.text(place, small(text, HPos::Right, on_heat(look, 0.0)));
 }
 
 /// All maps of a pair on one sheet, with the same windows; `None` for fewer than two densities.
