@@ -17,7 +17,8 @@ use crate::figure::canvas::style::{MARGIN, PNG_SCALE};
 use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::along::parameter_range;
 use crate::figure::parts::bifurcations::Labels;
-use crate::figure::parts::branches::{Branch, branches, located, meet};
+use crate::figure::parts::branches::{Branch, branches};
+use crate::figure::parts::meeting::{located, meet};
 use crate::figure::parts::view::{self, View, middles};
 use crate::figure::parts::{caption, names, table};
 

@@ -7,7 +7,8 @@ use super::{Drawn, Kind};
 use crate::figure::canvas::style::Stroke;
 use crate::figure::figures::Print;
 use crate::figure::parts::along::{self, Curve, Track};
-use crate::figure::parts::branches::{Branch, branches, located, meet};
+use crate::figure::parts::branches::{Branch, branches};
+use crate::figure::parts::meeting::{located, meet};
 use crate::figure::parts::table::{self, number as number_of};
 use crate::figure::parts::{caption, names, view};
 

@@ -140,8 +140,8 @@ fn with_lines(
     (sheet, lines)
 }
 
-/// Writes the largest density into the lower right corner of a map whose colours it scales, on the colour of no density:
-/// logarithmic colours may be dark there.
+/// Writes the largest density into the lower right corner of a map whose colours it scales, on the colour of no
+/// density: logarithmic colours may be dark there.
 fn write_maximum(page: &Page, map: Rectangle, found: &JointPoint<'_>) {
     let look = page.look();
     let largest = symbols::rounded_to(found.shown.largest, DIGITS);

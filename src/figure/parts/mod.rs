@@ -8,6 +8,7 @@ pub(super) mod crossed;
 pub(super) mod inset;
 pub(super) mod joint_map;
 pub(super) mod joint_sheet;
+pub(super) mod meeting;
 pub(super) mod names;
 pub(super) mod pages;
 pub(super) mod region_room;

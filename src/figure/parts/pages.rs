@@ -1,5 +1,5 @@
-//! How a figure fits its page: panels become lower or higher, and where that is not enough some of them stand on further
-//! pages.
+//! How a figure fits its page: panels become lower or higher, and where that is not enough some of them stand on
+//! further pages.
 
 use crate::figure::canvas::look::Look;
 use crate::figure::figures::{Figure, Print};
