@@ -12,6 +12,10 @@ use crate::figure::style::{
 /// Decades of logarithmic colours below the largest density.
 pub(crate) const DECADES: f64 = 4.0;
 
+/// A page is never lower than so many figure pixels, unless its height is fixed: with less, panels have no room for
+/// their own titles.
+const LEAST_HEIGHT: f64 = 600.0;
+
 /// How a drawing looks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Look {
@@ -63,12 +67,19 @@ impl FigureStyle {
             let width = usable(width * POINTS_A_MILLIMETRE, bounds.0, bounds);
             width / points
         });
+        let own = self.width.greatest_height() * POINTS_A_MILLIMETRE / points;
+        // Lettering that is very large for a page takes more of it.
+        let greatest_height = if self.width.has_fixed_height() {
+            own
+        } else {
+            own.max(LEAST_HEIGHT)
+        };
         let line = self
             .line
             .map(|line| usable(line, 1.0, (0.01, 100.0)) / (CURVE_LINE * points));
         Look {
             page,
-            greatest_height: self.width.greatest_height() * POINTS_A_MILLIMETRE / points,
+            greatest_height,
             has_fixed_height: self.width.has_fixed_height(),
             tall: 1.0,
             points,
