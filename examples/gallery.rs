@@ -78,7 +78,7 @@ fn section(file: &StartingFile, images: &Path) -> Result<String, Box<dyn std::er
     }
     let figures = Figures::of_sweep(&found, file.title(), &[]);
     let name = format!("diagram_{}", family.axis(0));
-    if let Some(figure) = figures.draw(&name)? {
+    for figure in figures.draw(&name)? {
         let picture = format!("{}.svg", file.name);
         std::fs::write(images.join(&picture), figure.svg())?;
         let words = format!("Density of {} against {parameter}", family.axis(0));

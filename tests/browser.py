@@ -149,8 +149,8 @@ def is_usable(browser, axe, where):
 
 
 def fits(browser, where):
-    """At four widths nothing is wider than its window, and no text of a control is cut."""
-    for width, height in ((360, 740), (800, 1100), (1280, 900), (3840, 2160)):
+    """At eight widths nothing is wider than its window, and no text of a control is cut."""
+    for width, height in ((360, 740), (390, 844), (768, 1024), (800, 1100), (1280, 900), (1366, 700), (1920, 1080), (3840, 2160)):
         browser.size(width, height)
         browser.until("return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))", "no picture")
         wide = browser.run("return [document.documentElement.scrollWidth, document.documentElement.clientWidth]")
@@ -159,6 +159,28 @@ def fits(browser, where):
             && (one.scrollWidth > one.clientWidth + 1 && getComputedStyle(one).display !== 'inline')).map((one) => one.outerHTML.slice(0, 120))""")
         assert not cut, f"{where}, {width} pixels: {cut}"
     browser.size(1280, 900)
+
+
+def is_in_one_screen(browser):
+    """On a telephone the slider stays in sight above the joint density, which is whole below it, and above the diagram."""
+    browser.size(390, 844)
+    for canvas in ("joint-canvas", "diagram-canvas"):
+        browser.run("document.getElementById(arguments[0]).scrollIntoView({ block: 'end' })", canvas)
+        browser.until("return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))", "no picture")
+        slide, plot = browser.run("""return ['slide', arguments[0]].map((id) => document.getElementById(id).getBoundingClientRect())
+            .map(({ top, bottom }) => [top, bottom])""", canvas)
+        assert 0 <= slide[0] and slide[1] <= plot[0] + 1 and plot[1] <= 845, f"slider at {slide}, {canvas} at {plot}"
+    browser.size(1280, 900)
+    browser.run("window.scrollTo(0, 0)")
+
+
+def copies(browser):
+    """A caption, a table and a command are copied of a panel."""
+    browser.run("window.copied = []; navigator.clipboard.writeText = async (text) => { window.copied.push(text); }")
+    for number, (what, words) in enumerate((("caption", "Computed with pbif"), ("table", ","), ("command", "pbif plot RUN --only joint_xy --at "))):
+        browser.run("const one = document.querySelector('#joint .exports select'); one.value = arguments[0]; one.dispatchEvent(new Event('change'))", what)
+        browser.until(f"return window.copied.length > {number}", f"the {what} is not copied")
+        assert words in browser.run(f"return window.copied[{number}]"), what
 
 
 def saves(browser, folder, panels):
@@ -210,6 +232,8 @@ def from_disk(driver, page, axe, folder, images):
     browser = Browser(driver, True)
     browser.open(f"file://{page}")
     fits(browser, "the page of a run")
+    is_in_one_screen(browser)
+    copies(browser)
     if images:
         browser.open(f"file://{page}#f_c=-0.005")
         browser.picture(f"{images}/explorer.png")
@@ -222,7 +246,7 @@ def from_disk(driver, page, axe, folder, images):
     dark = browser.run("return getComputedStyle(document.body).backgroundColor")
     assert max(map(int, re.findall(r"\d+", dark)[:3])) < 60, dark
     is_named(browser)
-    laid = "return [...document.querySelectorAll('#equations math')].filter((one) => one.getBoundingClientRect().width > 30 && one.ariaLabel).length"
+    laid = "return [...document.querySelectorAll('#equations .equation')].filter((one) => one.getBoundingClientRect().width > 30 && one.ariaLabel).length"
     assert browser.run(laid) == 3, "the equations are not typeset"
     assert browser.run("return document.querySelector('#equations msub').textContent") == "fc"
     assert not browser.run("return document.getElementById('paths').checkVisibility()"), "a saved page holds no equations that a path could follow"

@@ -282,11 +282,12 @@ impl Found {
         self.with_figures(&[], |figures| figures.names())
     }
 
-    /// A figure by its name; marginals and joint densities at the computed values nearest to `at`.
+    /// A figure by its name, the first page of one of several; marginals and joint densities at the computed values
+    /// nearest to `at`.
     fn figure(&self, py: Python<'_>, name: &str, at: Vec<f64>) -> PyResult<Option<Figure>> {
         let drawn = py.detach(|| self.with_figures(&at, |figures| figures.draw(name)));
         let drawn = drawn.map_err(|error| error::other(py, error))?;
-        Ok(drawn.map(Figure))
+        Ok(drawn.into_iter().next().map(Figure))
     }
 
     /// The page of the explorer, as HTML.

@@ -203,11 +203,11 @@ impl Plane {
         self.with_figures(|figures| figures.names())
     }
 
-    /// A figure by its name.
+    /// A figure by its name, the first page of one of several.
     fn figure(&self, py: Python<'_>, name: &str) -> PyResult<Option<Figure>> {
         let drawn = py.detach(|| self.with_figures(|figures| figures.draw(name)));
         let drawn = drawn.map_err(|error| error::other(py, error))?;
-        Ok(drawn.map(Figure))
+        Ok(drawn.into_iter().next().map(Figure))
     }
 
     /// The page of the explorer, as HTML; its densities are solved.

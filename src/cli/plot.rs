@@ -7,7 +7,9 @@ use super::output::OutputFolder;
 use super::stored::{Override, Stored, set};
 use super::{CommandError, Outcome};
 use crate::continuation::{Point, SweepResult};
-use crate::figure::{ColourMap, FigureWidth, Figures, Ground, Typeface, write_figures};
+use crate::figure::{
+    ColourMap, ColourScale, FigureWidth, Figures, Ground, Typeface, write_figures,
+};
 use crate::job::draw_sweep;
 use crate::run::{StoredPlane, format_number};
 use crate::sweep_file::{Diagnostic, list};
@@ -110,6 +112,7 @@ pub(super) fn style_key(word: &str) -> Result<String, CommandError> {
         .collect();
     let fonts = Typeface::ALL.map(Typeface::name);
     let colours = ColourMap::ALL.map(ColourMap::name);
+    let scales = ColourScale::ALL.map(ColourScale::name);
     let grounds = Ground::ALL.map(Ground::name);
     let switches = ["no-title", "no-letters"];
     if word.parse::<f64>().is_ok() {
@@ -120,6 +123,7 @@ pub(super) fn style_key(word: &str) -> Result<String, CommandError> {
         () if is_name(&widths) => of("width"),
         () if is_name(&fonts) => of("font"),
         () if is_name(&colours) => of("colours"),
+        () if is_name(&scales) => of("scale"),
         () if is_name(&grounds) => of("ground"),
         () if is_name(&switches) => Ok(format!(
             "figures.style.{}=\"off\"",
@@ -130,6 +134,7 @@ pub(super) fn style_key(word: &str) -> Result<String, CommandError> {
                 .into_iter()
                 .chain(fonts)
                 .chain(colours)
+                .chain(scales)
                 .chain(grounds)
                 .chain(switches)
                 .collect();

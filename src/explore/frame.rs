@@ -43,7 +43,7 @@ struct DetectionMarks {
 }
 
 /// A peak, valley, crater or ring that is there, or may be.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 struct Mark {
     kind: &'static str,
     at: Vec<f64>,
@@ -76,7 +76,14 @@ impl Frame {
             findings: sentences(report, family),
             moments: family.averages().filter_map(moments).collect(),
             measures: others.map(numbers).collect(),
-            found: point.detections.iter().map(DetectionMarks::new).collect(),
+            found: point
+                .detections
+                .iter()
+                .enumerate()
+                .map(|(number, detection)| {
+                    DetectionMarks::new(detection, point.densities.get(number))
+                })
+                .collect(),
         }
     }
 }
@@ -89,13 +96,60 @@ fn sentences(report: &SolveReport, family: &Family) -> Vec<String> {
 }
 
 impl DetectionMarks {
-    fn new(detection: &Detection) -> Self {
+    fn new(detection: &Detection, density: Option<&EstimatedDensity>) -> Self {
         let shown = |feature: &&Feature| feature.verdict != Verdict::Absent;
         let features = detection.features.iter().filter(shown);
+        let mut features: Vec<Mark> = features.map(Mark::new).collect();
+        if let Some(density) = density {
+            with_both_saddles(&mut features, density);
+        }
         Self {
             words: detection.signature.to_string(),
             seen: detection.is_seen,
-            features: features.map(Mark::new).collect(),
+            features,
+        }
+    }
+}
+
+/// Adds the mirror images of saddles of a joint density that is symmetric about a centre: of two that are equally high
+/// persistence names the one over which pieces join, and not the other, which closes a ring. A saddle in the same cell
+/// as a summit is none to the eye, and is left out.
+fn with_both_saddles(marks: &mut Vec<Mark>, estimated: &EstimatedDensity) {
+    let [across, along] = &estimated.density.axes[..] else {
+        return;
+    };
+    let cell = |at: &[f64]| match at {
+        [x, y] => across.find(*x).zip(along.find(*y)),
+        _ => None,
+    };
+    let are_near = |a: &[f64], b: &[f64]| match (cell(a), cell(b)) {
+        (Some(a), Some(b)) => a.0.abs_diff(b.0) <= 1 && a.1.abs_diff(b.1) <= 1,
+        _ => true,
+    };
+    let summits: Vec<Vec<f64>> = marks
+        .iter()
+        .filter(|mark| mark.kind == "peak")
+        .map(|mark| mark.at.clone())
+        .collect();
+    marks.retain(|mark| {
+        mark.kind != "valley" || summits.iter().all(|summit| !are_near(summit, &mark.at))
+    });
+    let Some([x, y]) = estimated.structure.centre.as_deref() else {
+        return;
+    };
+    let saddles = marks.iter().filter(|mark| mark.kind == "valley");
+    let images: Vec<Mark> = saddles
+        .filter_map(|mark| match mark.at[..] {
+            [a, b] => Some(Mark {
+                at: vec![2.0 * x - a, 2.0 * y - b],
+                ..mark.clone()
+            }),
+            _ => None,
+        })
+        .collect();
+    for image in images {
+        if marks.iter().all(|mark| !are_near(&mark.at, &image.at)) {
+            marks.push(image);
         }
     }
 }

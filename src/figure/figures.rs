@@ -26,6 +26,8 @@ pub struct Figure {
     pub caption: String,
     /// The numbers it was drawn from, as CSV with a header.
     pub data: String,
+    /// Panels that may stand on further pages where one has no room for all.
+    panels: usize,
     drawing: Drawing,
 }
 
@@ -36,8 +38,30 @@ impl Figure {
             name: String::new(),
             caption,
             data,
+            panels: 1,
             drawing: page.drawing(),
         }
+    }
+
+    /// The same, of so many panels in all, of which [`Print::share`] says those that stand on one page.
+    pub(super) fn of_panels(self, panels: usize) -> Self {
+        Self { panels, ..self }
+    }
+
+    /// Panels that may stand on further pages.
+    pub(super) fn panels(&self) -> usize {
+        self.panels
+    }
+
+    /// Its height, in figure pixels.
+    pub(super) fn height(&self) -> f64 {
+        self.drawing.height()
+    }
+
+    /// The same in the middle of a page of that height, where it is lower.
+    pub(super) fn on_page(mut self, height: f64) -> Self {
+        self.drawing.centre(height);
+        self
     }
 
     /// The figure as an SVG document. Heat maps are embedded pictures; equal results give equal bytes.
@@ -66,6 +90,16 @@ pub(super) struct Print<'a> {
     /// Plain text, may be empty.
     pub(super) title: &'a str,
     pub(super) look: Look,
+    /// Which of how many pages, counted from zero.
+    pub(super) part: (usize, usize),
+}
+
+impl Print<'_> {
+    /// Those of so many panels that stand on this page: about as many as on the others, in their order.
+    pub(super) fn share(&self, panels: usize) -> std::ops::Range<usize> {
+        let (number, pages) = self.part;
+        number * panels / pages..(number + 1) * panels / pages
+    }
 }
 
 /// The figures that can be drawn of a sweep, a comparison, a map, curves or a friction law. Nothing is drawn before it
@@ -84,7 +118,11 @@ impl<'a> Figures<'a> {
         Self {
             sketches,
             kinds: Vec::new(),
-            print: Print { title, look },
+            print: Print {
+                title,
+                look,
+                part: (0, 1),
+            },
         }
     }
 
@@ -152,11 +190,12 @@ impl<'a> Figures<'a> {
         &self.kinds
     }
 
-    /// Draws the figure of that name and no other; `None` where no density is there to draw.
+    /// Draws the figure of that name and no other: nothing where no density is there to draw, several pages
+    /// (`pairs_xy_1`, `pairs_xy_2`) where one has no room for all of its panels.
     ///
     /// # Errors
     /// [`FigureError::Unknown`] for a name that is not one of [`Figures::names`].
-    pub fn draw(&self, name: &str) -> Result<Option<Figure>, FigureError> {
+    pub fn draw(&self, name: &str) -> Result<Vec<Figure>, FigureError> {
         match self.sketches.iter().find(|sketch| sketch.name == name) {
             Some(sketch) => Ok(sketch.draw(&self.print)),
             None => Err(FigureError::Unknown {
@@ -187,7 +226,7 @@ impl<'a> Figures<'a> {
 
     /// Draws the figures that some words name, in their order: a word is a whole name, the beginning of names up to a
     /// `_` (`joint` names `joint_xy_0.5`), or `all`. Those without any density are left out, and words that name none
-    /// are passed over.
+    /// are passed over. One that has no room on a page has several, `…_1`, `…_2`.
     pub fn draw_named<S: AsRef<str>>(&self, words: &[S]) -> Vec<Figure> {
         let is_wanted = |sketch: &&Sketch<'_>| {
             let mut words = words.iter().map(AsRef::as_ref);

@@ -9,6 +9,7 @@ use super::error::FigureError;
 use super::figures::Figure;
 use super::settings::Format;
 use crate::UNFINISHED;
+use crate::formula::latex;
 
 /// Writes figures in every format into a folder, which is made if need be; returns the files in the order in which they
 /// were made. Files of the same names are replaced.
@@ -36,6 +37,7 @@ fn write(figure: &Figure, format: Format, folder: &Path) -> Result<Option<PathBu
         Format::Pdf => figure.pdf(),
         Format::Csv => figure.data.as_bytes().to_vec(),
         Format::Txt => figure.caption.as_bytes().to_vec(),
+        Format::Tex => (latex::with_symbols(figure.caption.trim_end()) + "\n").into_bytes(),
     };
     if bytes.is_empty() {
         return Ok(None);

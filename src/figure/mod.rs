@@ -8,7 +8,7 @@
 //!
 //! let column = FigureStyle { width: FigureWidth::Single, ..FigureStyle::default() };
 //! let figures = Figures::of_sweep(result, "Coulomb friction", &[-0.02, 0.01]).with_style(&column);
-//! if let Some(diagram) = figures.draw("diagram_x")? {
+//! for diagram in figures.draw("diagram_x")? {
 //!     println!("{}", diagram.svg());
 //! }
 //! write_figures(&figures.draw_all(), &Format::ALL, "figures".as_ref())?;
@@ -59,4 +59,4 @@ pub use figures::{Figure, Figures};
 #[cfg(feature = "figures")]
 pub use files::write_figures;
 pub use settings::{FigureSettings, Format};
-pub use style::{ColourMap, FigureStyle, FigureWidth, Ground, Typeface};
+pub use style::{ColourMap, ColourScale, FigureStyle, FigureWidth, Ground, Typeface};

@@ -50,9 +50,11 @@ pub enum Format {
     Csv,
     /// Its caption, as plain text.
     Txt,
+    /// Its caption, as LaTeX.
+    Tex,
 }
 
-words! { Format, pub name: Svg: "svg", Png: "png", Pdf: "pdf", Csv: "csv", Txt: "txt" }
+words! { Format, pub name: Svg: "svg", Png: "png", Pdf: "pdf", Csv: "csv", Txt: "txt", Tex: "tex" }
 
 impl Format {
     /// Those that are written where none is named.

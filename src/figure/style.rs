@@ -8,6 +8,10 @@ pub(super) const TEXT_OF_OWN_WIDTH: f64 = 10.5;
 const TEXT_OF_JOURNALS: f64 = 8.0;
 /// The same on slides.
 const TEXT_OF_SLIDES: f64 = 18.0;
+/// The greatest height of a figure, in millimetres: a page of a journal with room for a caption.
+const HEIGHT: f64 = 234.0;
+/// Width and height of a slide, in millimetres: 16 to 9.
+const SLIDE: (f64, f64) = (254.0, 254.0 * 9.0 / 16.0);
 /// The narrowest page that every figure can be laid out on, in sizes of its text.
 pub(super) const LEAST_WIDTH: f64 = 22.0;
 /// The widest, in the same unit.
@@ -25,7 +29,7 @@ pub enum FigureWidth {
     OneAndAHalf,
     /// Two columns: 174 mm.
     Double,
-    /// A slide: 254 mm, with lettering for a room.
+    /// A slide: 254 mm by 142.9 mm, 16 to 9, with lettering for a room.
     Slide,
     /// So many millimetres.
     Millimetres(f64),
@@ -67,9 +71,23 @@ impl FigureWidth {
             Self::Single => Some(84.0),
             Self::OneAndAHalf => Some(129.0),
             Self::Double => Some(174.0),
-            Self::Slide => Some(254.0),
+            Self::Slide => Some(SLIDE.0),
             Self::Millimetres(width) => Some(width),
         }
+    }
+
+    /// The greatest height of a figure, in millimetres. Panels that have no room on such a page flow into columns, then
+    /// onto further pages.
+    pub fn greatest_height(self) -> f64 {
+        match self {
+            Self::Slide => SLIDE.1,
+            _ => HEIGHT,
+        }
+    }
+
+    /// Whether every figure is as high as that.
+    pub fn has_fixed_height(self) -> bool {
+        self == Self::Slide
     }
 }
 
@@ -100,6 +118,18 @@ pub enum ColourMap {
 }
 
 words! { ColourMap, pub name: Viridis: "viridis", Cividis: "cividis", Magma: "magma", Grey: "grey" }
+
+/// How colours of heat maps follow the density.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum ColourScale {
+    /// In proportion.
+    #[default]
+    Linear,
+    /// By decades, four of them below the largest density: for tails. What is lower has the colour of the floor.
+    Log,
+}
+
+words! { ColourScale, pub name: Linear: "linear", Log: "log" }
 
 /// The typeface: one family each, which comes with the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -137,6 +167,8 @@ pub struct FigureStyle {
     pub font: Typeface,
     /// Colours of maps and surfaces.
     pub colours: ColourMap,
+    /// Whether colours of heat maps are linear or logarithmic in the density.
+    pub scale: ColourScale,
     /// Light or dark ground.
     pub ground: Ground,
     /// Whether the title of the run stands above each figure.
@@ -154,6 +186,7 @@ impl Default for FigureStyle {
             dpi: 288.0,
             font: Typeface::default(),
             colours: ColourMap::default(),
+            scale: ColourScale::default(),
             ground: Ground::default(),
             title: true,
             letters: true,

@@ -48,6 +48,8 @@ pub mod arithmetic;
 pub mod graph;
 mod lanes;
 pub mod language;
+#[cfg(any(feature = "store", feature = "figures"))]
+pub(crate) mod latex;
 pub mod limits;
 pub mod mathml;
 mod print;

@@ -4,8 +4,10 @@
 use proptest::prelude::*;
 use roxmltree::Document;
 
-use pbif::continuation::{Label, Located, SweepResult};
-use pbif::figure::{ColourMap, Figure, FigureStyle, FigureWidth, Figures, Ground, Typeface};
+use pbif::continuation::{Label, Located, Measure, SweepResult};
+use pbif::figure::{
+    ColourMap, ColourScale, Figure, FigureStyle, FigureWidth, Figures, Ground, Typeface,
+};
 
 use crate::common::closed_forms::{bistable, rayleigh, uniform};
 use crate::texts::{size, texts};
@@ -46,6 +48,210 @@ fn assert_readable(figure: &Figure, style: &FigureStyle) {
     }
 }
 
+/// The figure is no higher than a page, and a slide is one of 16 to 9.
+fn assert_fits(figure: &Figure, style: &FigureStyle) {
+    let svg = figure.svg();
+    let ([wide, high], units) = size(&Document::parse(&svg).unwrap());
+    let (name, most) = (&figure.name, style.width.greatest_height());
+    let high = high * 25.4 / 96.0;
+    // A canvas counts in twentieths of a figure pixel.
+    assert!(high < most + 0.05, "{name} is {high} mm high in {style:?}");
+    if style.width.has_fixed_height() {
+        assert_eq!(9.0 * units[0], 16.0 * units[1], "{name}: {wide} by {high}");
+    }
+}
+
+/// A sweep of which more is watched, measured and drawn than has room on a page.
+fn crowded() -> SweepResult {
+    let mut result = rayleigh(("coulomb", "f_c"), 1.0, &uniform());
+    for point in &mut result.points {
+        for number in 0..17 {
+            let value = (point.value * f64::from(number)).cos();
+            point.report.measures.push(Measure {
+                name: format!("mean_q{number}"),
+                value,
+                error: None,
+                unit: "1".to_owned(),
+            });
+        }
+    }
+    result
+}
+
+#[test]
+fn what_has_no_room_on_a_page_stands_on_several() {
+    let result = crowded();
+    let at: Vec<f64> = (0..7)
+        .map(|number| -1.0 + 0.3 * f64::from(number))
+        .collect();
+    for width in FigureWidth::NAMED {
+        let style = FigureStyle {
+            width,
+            ..FigureStyle::default()
+        };
+        let figures = Figures::of_sweep(&result, TITLE, &at).with_style(&style);
+        let drawn =
+            figures.draw_named(&["measures", "joint_xy", "surface_xy", "pairs_xy", "health"]);
+        let named = |name: &str| {
+            drawn
+                .iter()
+                .filter(|figure| figure.name.starts_with(name))
+                .count()
+        };
+        assert!(
+            named("measures_") >= 17 && named("pairs_xy") >= 1,
+            "{width:?}"
+        );
+        for figure in &drawn {
+            assert_readable(figure, &style);
+            assert_fits(figure, &style);
+        }
+        // Each page says which it is, and together they have every panel once.
+        let pages: Vec<&Figure> = drawn
+            .iter()
+            .filter(|one| one.name.starts_with("pairs_xy"))
+            .collect();
+        for (number, page) in pages.iter().enumerate() {
+            let says = format!(" Page {} of {}.", number + 1, pages.len());
+            assert!(
+                pages.len() == 1 || page.caption.contains(&says),
+                "{}",
+                page.caption
+            );
+        }
+        let all: String = pages.iter().map(|page| page.svg()).collect();
+        for letter in 'a'..='g' {
+            assert_eq!(
+                all.matches(&format!("({letter})")).count(),
+                1,
+                "{letter} in {width:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn grey_is_grey_everywhere() {
+    let style = FigureStyle {
+        width: FigureWidth::Single,
+        colours: ColourMap::Grey,
+        ..FigureStyle::default()
+    };
+    for result in [bistable(), rayleigh(("coulomb", "f_c"), 1.0, &uniform())] {
+        for figure in drawn(&result, &style) {
+            let png = figure.png().unwrap();
+            let mut reader = png::Decoder::new(std::io::Cursor::new(&png))
+                .read_info()
+                .unwrap();
+            let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+            reader.next_frame(&mut pixels).unwrap();
+            let is_grey = |rgb: &[u8]| rgb[0] == rgb[1] && rgb[1] == rgb[2];
+            assert!(pixels.chunks(3).all(is_grey), "{} has colours", figure.name);
+        }
+    }
+}
+
+#[test]
+fn logarithmic_colours_tell_their_floor() {
+    let style = FigureStyle {
+        scale: ColourScale::Log,
+        ..FigureStyle::default()
+    };
+    let result = rayleigh(("coulomb", "f_c"), 1.0, &uniform());
+    let figures = Figures::of_sweep(&result, TITLE, &[-0.5, 1.0]).with_style(&style);
+    for figure in figures.draw_named(&["diagram", "joint", "pairs"]) {
+        assert_readable(&figure, &style);
+        assert!(
+            figure.caption.contains("below 10^-4 of the largest"),
+            "{}",
+            figure.caption
+        );
+    }
+}
+
+/// Every kind of figure of a sweep in every style, as a sheet of contact prints for the eye: `PBIF_FIGURES=folder
+/// cargo test --release --test figures -- --ignored` writes `contact.html` there, which any browser shows.
+#[test]
+#[ignore = "writes a sheet to be looked at"]
+fn a_sheet_of_all_figures_in_all_styles() {
+    let Some(folder) = std::env::var_os("PBIF_FIGURES") else {
+        return;
+    };
+    let folder = std::path::Path::new(&folder);
+    std::fs::create_dir_all(folder).unwrap();
+    let mut styles: Vec<(String, FigureStyle)> = Vec::new();
+    for width in FigureWidth::NAMED {
+        let style = FigureStyle {
+            width,
+            ..FigureStyle::default()
+        };
+        styles.push((width.name().unwrap_or_default().to_owned(), style));
+    }
+    let single = FigureStyle {
+        width: FigureWidth::Single,
+        ..FigureStyle::default()
+    };
+    let others = [
+        (
+            "serif",
+            FigureStyle {
+                font: Typeface::Serif,
+                title: false,
+                ..single
+            },
+        ),
+        (
+            "dark",
+            FigureStyle {
+                ground: Ground::Dark,
+                ..single
+            },
+        ),
+        (
+            "grey",
+            FigureStyle {
+                colours: ColourMap::Grey,
+                ..single
+            },
+        ),
+        (
+            "log",
+            FigureStyle {
+                scale: ColourScale::Log,
+                ..single
+            },
+        ),
+    ];
+    styles.extend(others.map(|(name, style)| (name.to_owned(), style)));
+    let text = std::fs::read_to_string("sweeps/coulomb_fc.toml").unwrap();
+    let fewer = "sweep.points=21 cells.x.count=40 cells.y.count=60 locate.grid_check=off";
+    let (_, swept) = crate::common::sweeps::swept(&text, fewer);
+    let sweeps = [
+        ("coulomb_fc", swept, vec![-0.02, -0.01, 0.0, 0.01]),
+        ("crowded", crowded(), vec![-1.0, -0.5, 0.25, 1.0]),
+        ("bistable", bistable(), vec![-0.5, 0.0, 0.5, 1.0]),
+    ];
+    let mut page = String::from(
+        "<!doctype html><meta charset='utf-8'><title>Contact prints</title><style>body{font:14px sans-serif}\
+         figure{display:inline-block;margin:6px;vertical-align:top}img{height:260px;border:1px solid #bbb}</style>",
+    );
+    for (name, style) in &styles {
+        for (sweep, result, at) in &sweeps {
+            page += &format!("<h2>{name}: {sweep}</h2>");
+            let figures = Figures::of_sweep(result, TITLE, at).with_style(style);
+            for figure in figures.draw_all() {
+                let file = format!("{name}-{sweep}-{}.png", figure.name);
+                std::fs::write(folder.join(&file), figure.png().unwrap()).unwrap();
+                let caption = &figure.name;
+                page += &format!(
+                    "<figure><img src='{file}' alt='{caption}'><figcaption>{caption}</figcaption></figure>"
+                );
+            }
+        }
+    }
+    std::fs::write(folder.join("contact.html"), page).unwrap();
+}
+
 #[test]
 fn every_figure_reads_in_every_named_width() {
     let (bistable, rayleigh) = (bistable(), rayleigh(("coulomb", "f_c"), 1.0, &uniform()));
@@ -60,6 +266,7 @@ fn every_figure_reads_in_every_named_width() {
         for result in [&bistable, &rayleigh] {
             for figure in drawn(result, &style) {
                 assert_readable(&figure, &style);
+                assert_fits(&figure, &style);
                 if let Some(width) = width.millimetres() {
                     let svg = figure.svg();
                     let given = size(&Document::parse(&svg).unwrap()).0[0] * 25.4 / 96.0;

@@ -29,13 +29,13 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("compare", &[
         "cancellation", "system", "space", "sampling", "monte_carlo", "density", "continuation", "method"
     ]),
-    ("figure", &["system", "space", "density", "topology", "continuation", "compare"]),
+    ("figure", &["formula", "system", "space", "density", "topology", "continuation", "compare"]),
     ("sweep_file", &[
         "formula", "cancellation", "system", "exponent", "space", "sampling", "generator", "stationary", "density",
         "topology", "continuation", "method", "figure"
     ]),
     ("run", &[
-        "system", "space", "density", "topology", "continuation", "compare", "sweep_file", "bytes",
+        "formula", "system", "space", "density", "topology", "continuation", "compare", "sweep_file", "bytes",
         "cancellation", "method"
     ]),
     ("job", &["cancellation", "continuation", "compare", "figure", "sweep_file", "run"]),

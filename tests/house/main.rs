@@ -13,5 +13,6 @@ mod common;
 mod architecture;
 mod circles;
 mod latex;
+mod links;
 mod readme;
 mod validation;

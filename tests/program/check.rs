@@ -129,3 +129,12 @@ fn figures_outside_a_part_of_the_sweep_are_left_out_with_one_warning() {
     let words = ["`figures.at` has 0.5, outside the sweep"];
     room.refused(&format!("{part} figures.at=[0.5]"), &words);
 }
+
+#[test]
+fn starting_files_warn_of_nothing() {
+    for file in pbif::sweep_file::starting_files() {
+        let settings = crate::common::sweeps::settings(file.text, "");
+        let warnings = settings.warnings.render(false);
+        assert!(settings.warnings.is_empty(), "{}: {warnings}", file.name);
+    }
+}

@@ -51,7 +51,7 @@ fn from_a_text_to_a_figure_without_a_disk() {
 
     let settings = &sweep.settings;
     let figures = Figures::of_sweep(&found, &settings.title, &settings.figures.at);
-    let diagram = figures.draw("diagram_x").unwrap().unwrap();
+    let diagram = figures.draw("diagram_x").unwrap().remove(0);
     assert!(diagram.svg().starts_with("<svg") && diagram.svg().contains("two wells"));
 }
 

@@ -84,7 +84,8 @@ Examples:
   pbif plot output/coulomb_plane --with output/coulomb_fc   mark what a sweep located in the plane of a map or of curves
 
 --style takes, in any order, a width (single, one-and-a-half, double, slide, own, or a number of millimetres),
-a typeface (sans, serif), colours (viridis, cividis, magma, grey), a ground (light, dark), and no-title, no-letters.
+a typeface (sans, serif), colours (viridis, cividis, magma, grey), logarithmic ones (log), a ground (light, dark), and
+no-title, no-letters.
 The figures themselves, and every key of their style: docs/figures.md";
 
 pub(super) const EXPLORE_EXAMPLES: &str = "\

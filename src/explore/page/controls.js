@@ -3,7 +3,24 @@
 /** Buttons that save a panel. */
 const exportButtons = (page, panel, name) => ["SVG", "PNG", "CSV"].map((format) => make("button", {
   type: "button", "aria-label": `Save ${name} as ${format}`, onclick: () => page.export(panel, format.toLowerCase()),
-}, format));
+}, format)).concat(copyChoice(page, panel, name));
+
+/** What can be copied of a panel. */
+const copyChoice = (page, panel, name) => {
+  const choices = ["picture", "table", "caption", "command"].map((what) => make("option", { value: what }, what));
+  const select = make("select", { "aria-label": `Copy of ${name}` }, make("option", { value: "" }, "Copy…"), choices);
+  select.addEventListener("change", () => {
+    const what = select.value;
+    if (!what) return;
+    const first = select.options[0];
+    page.copyPanel(panel, what).then(() => { first.textContent = "Copied"; }, () => { first.textContent = "Refused"; })
+      .finally(() => {
+        select.value = "";
+        setTimeout(() => { first.textContent = "Copy…"; }, 1200);
+      });
+  });
+  return [select];
+};
 
 /** What is swept, and what is held. */
 const subtitle = (scene) => {

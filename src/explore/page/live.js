@@ -362,6 +362,10 @@ const setRange = (input, { range }, value) => {
   input.step = String((high - low) / 400);
 };
 
+/** So few sliders always stand open; more of them where the window is so many pixels high. */
+const FEW = 4;
+const HIGH = 800;
+
 /** A slider and a typed value for every parameter that is not swept. */
 const buildParameters = (page) => {
   const { scene } = page;
@@ -381,7 +385,9 @@ const buildParameters = (page) => {
       make("span", {}, nodes(parameter.symbol)), range, text);
   });
   fill($("parameters"), fields);
-  $("parameters").hidden = fields.length === 0;
+  $("others").hidden = fields.length === 0;
+  // Many sliders would leave a low window no room for what they move.
+  $("others").open = fields.length <= FEW || window.innerHeight >= HIGH;
   $("locate").hidden = false;
   $("locate").addEventListener("click", () => page.locate());
   $("map").hidden = !scene.plane;

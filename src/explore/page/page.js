@@ -292,31 +292,78 @@ class Page {
     return !wrong;
   }
 
-  /** One panel as SVG, PNG or CSV. */
-  async export(panel, format) {
-    const k = panel === "diagram" || panel === "plane" ? this.k[panel] : panel === "joint" || panel === "section" ? this.k.joint : Number(panel.slice(9));
+  /** What a panel shows: its density, what draws it, its size, and its name as that of a file. */
+  panel(panel) {
+    const isWhole = panel === "diagram" || panel === "plane";
+    const k = isWhole ? this.k[panel] : panel === "joint" || panel === "section" ? this.k.joint : Number(panel.slice(9));
     const drawing = { joint: drawJoint, diagram: drawDiagram, section: drawSection, plane: drawPlane }[panel] ?? drawMarginal;
     const canvas = $(panel.startsWith("marginal") ? panel : `${panel}-canvas`);
     const { width, height } = canvas.parentElement.getBoundingClientRect();
     const observable = this.source.observables[k];
-    const at = panel === "diagram" || panel === "plane" ? "" : `_${this.scene.swept.name}_${this.frame.value}`;
-    const name = `${panel.replace(/-\d+$/, "")}_${observable.name}${at}`;
+    const at = isWhole ? "" : `_${this.scene.swept.name}_${this.frame.value}`;
+    return { k, drawing, width, height, observable, name: `${panel.replace(/-\d+$/, "")}_${observable.name}${at}`, id: canvas.id };
+  }
+
+  /** The numbers of a panel; nothing where it has none. */
+  tableOf(panel) {
+    const { k, observable } = this.panel(panel);
+    const density = this.frame.densities[k];
+    if (panel === "plane") return planeCsv(this.scene);
+    if (panel === "diagram") return featuresCsv(this.scene, this.source, k);
+    return density ? densityCsv(this.scene, observable, density) : "";
+  }
+
+  /** A panel as PNG, three times as fine as it is shown. */
+  pictureOf(panel) {
+    const { k, drawing, width, height } = this.panel(panel);
+    const sheet = document.createElement("canvas");
+    const pen = new CanvasPen(sheet, width, height, 3);
+    pen.area([[0, 0], [width, 0], [width, height], [0, height]], { colour: this.theme.paper });
+    drawing(pen, width, height, this.view(k), this.size);
+    return new Promise((done, fail) => sheet.toBlob((blob) => (blob ? done(blob) : fail(new Error("no picture"))), "image/png"));
+  }
+
+  /** What is seen in a panel, of which system: a caption. */
+  captionOf(panel) {
+    const { k, id } = this.panel(panel);
+    const held = this.scene.parameters.filter(({ value }) => value !== null).map(({ symbol, value }) => `${plain(symbol)} = ${plainNumber(value, 6)}`);
+    const labels = this.scene.labels.filter(({ kind }) => kind === "bifurcation")
+      .map(({ label, value, error }) => `${label} at ${plainNumber(value, 8)} ± ${plainNumber(error, 2)}`);
+    const marked = panel === "diagram" && labels.length ? ` Marked: ${labels.join("; ")}.` : "";
+    return `${this.scene.title}. ${this.describe(id, k)}.${marked} Equations: ${this.scene.model.equations.map(({ text }) => text).join("; ")}; `
+      + `${held.join(", ")}. Method: ${this.frame.method}. Computed with ${this.scene.program}.`;
+  }
+
+  /** The command that draws a figure like a panel; RUN is the folder of the run, which a page that is sent does not know. */
+  commandOf(panel) {
+    const { observable } = this.panel(panel);
+    if (panel === "plane") return `pbif plot RUN --only map_${observable.name}`;
+    const kinds = { joint: `joint_${observable.name}`, section: `section_${observable.name}`, diagram: `diagram_${observable.name}` };
+    const at = panel === "diagram" ? "" : ` --at ${this.frame.value}`;
+    return `pbif plot RUN --only ${kinds[panel] ?? "marginals"}${at}`;
+  }
+
+  /** Copies what a panel shows: its picture, table, caption, or the command that draws it. */
+  async copyPanel(panel, what) {
+    if (what === "picture") {
+      await navigator.clipboard.write([new ClipboardItem({ "image/png": this.pictureOf(panel) })]);
+      return;
+    }
+    await copy({ table: () => this.tableOf(panel), caption: () => this.captionOf(panel), command: () => this.commandOf(panel) }[what]());
+  }
+
+  /** One panel as SVG, PNG or CSV. */
+  async export(panel, format) {
+    const { k, drawing, width, height, name } = this.panel(panel);
     if (format === "csv") {
-      const density = this.frame.densities[k];
-      if (panel === "plane") save(`${name}.csv`, "text/csv", planeCsv(this.scene));
-      else if (panel === "diagram") save(`${name}.csv`, "text/csv", featuresCsv(this.scene, this.source, k));
-      else if (density) save(`${name}.csv`, "text/csv", densityCsv(this.scene, observable, density));
+      const table = this.tableOf(panel);
+      if (table) save(`${name}.csv`, "text/csv", table);
     } else if (format === "svg") {
       const pen = new SvgPen(width, height, this.theme.paper);
       drawing(pen, width, height, this.view(k), this.size);
       save(`${name}.svg`, "image/svg+xml", pen.finish());
     } else {
-      const sheet = document.createElement("canvas");
-      const pen = new CanvasPen(sheet, width, height, 3);
-      pen.area([[0, 0], [width, 0], [width, height], [0, height]], { colour: this.theme.paper });
-      drawing(pen, width, height, this.view(k), this.size);
-      sheet.toBlob((blob) => blob && save(`${name}.png`, "image/png", blob));
+      save(`${name}.png`, "image/png", await this.pictureOf(panel));
     }
   }
 }
-

@@ -23,7 +23,53 @@ const drawEmpty = (pen, rect, theme, size, words) => {
 
 const emptyWords = (frame) => (frame ? EMPTY_WORDS[frame.status] ?? "no density" : "waiting for the first density");
 
-/** The image of a joint density over a plot. */
+/** Sides of which one is at most so many times as long as the other have one scale. */
+const ALIKE = 2;
+
+/** The rectangle in which a unit is as long across as up, where both axes are about as long; else the whole. */
+const withEqualScales = (rect, [x0, x1], [y0, y1]) => {
+  const longer = (x1 - x0) / (y1 - y0);
+  if (!(longer <= ALIKE && longer >= 1 / ALIKE)) return rect;
+  const scale = Math.min(rect.width / (x1 - x0), rect.height / (y1 - y0));
+  const [width, height] = [scale * (x1 - x0), scale * (y1 - y0)];
+  return { left: rect.left + 0.5 * (rect.width - width), top: rect.top + 0.5 * (rect.height - height), width, height };
+};
+
+/** The two middles about a place, the first of them, and the share of the second; -1 outside of the cells. */
+const between = (edges, middles, value) => {
+  if (cellOf(edges, value) < 0) return [-1, 0];
+  const low = Math.min(Math.max(cellOf(middles, value), 0), middles.length - 2);
+  return [value < middles[0] ? 0 : value > middles[middles.length - 1] ? middles.length - 2 : low,
+    clamp((value - middles[low]) / (middles[low + 1] - middles[low]), 0, 1)];
+};
+
+/** The image of a joint density over a plot, linear between the middles of cells. */
+const drawSmoothHeat = (plot, observable, values, colours) => {
+  const { edges, centres: [xs, ys] } = observable;
+  const rows = ys.length;
+  const palette = coloursOf(colours).pixels;
+  const share = shareOf(colours);
+  plot.pen.image(plot.rect, (image, columns, lines) => {
+    const { left, top, width, height } = plot.rect;
+    const across = Array.from({ length: columns }, (_, c) => between(edges[0], xs, plot.x.from(left + ((c + 0.5) / columns) * width)));
+    const up = Array.from({ length: lines }, (_, l) => between(edges[1], ys, plot.y.from(top + ((l + 0.5) / lines) * height)));
+    for (let line = 0; line < lines; line++) {
+      const [j, v] = up[line];
+      for (let column = 0; column < columns; column++) {
+        const [i, u] = across[column];
+        if (i < 0 || j < 0) {
+          image[line * columns + column] = 0;
+          continue;
+        }
+        const at = i * rows + j;
+        const value = (1 - u) * ((1 - v) * values[at] + v * values[at + 1]) + u * ((1 - v) * values[at + rows] + v * values[at + rows + 1]);
+        image[line * columns + column] = palette[Math.round(255 * clamp(share(value), 0, 1))];
+      }
+    }
+  });
+};
+
+/** The image of a joint density over a plot, cell by cell: sampling noise is not smoothed away. */
 const drawHeat = (plot, observable, values, colours) => {
   const { edges } = observable;
   const rows = edges[1].length - 1;
@@ -58,11 +104,13 @@ const drawJoint = (pen, width, height, view, size) => {
   const [x, y] = [view.window(k, 0), view.window(k, 1)];
   const inner = height - roomBelow(size) - 1.8 * size;
   const left = marginFor(y, inner, size);
-  const rect = { left, top: 1.8 * size, width: Math.max(40, width - left - roomForBar(colours, inner, size)), height: inner };
+  const whole = { left, top: 1.8 * size, width: Math.max(40, width - left - roomForBar(colours, inner, size)), height: inner };
+  const rect = withEqualScales(whole, x, y);
   const plot = new Plot(pen, rect, x, y, theme, size);
   if (!shown) drawEmpty(pen, rect, theme, size, emptyWords(frame));
   else {
-    drawHeat(plot, observable, shown, colours);
+    const isSmooth = frame.method === "generator" && observable.centres.every((middles) => middles.length > 1);
+    (isSmooth ? drawSmoothHeat : drawHeat)(plot, observable, shown, colours);
     if (options.contours) drawContours(plot, observable, shown, colours, largest(values));
     if (view.paths.length) drawPaths(plot, view.paths, size);
     if (options.marks) plot.clipped(() => drawMarks(plot, frame.found[k], size));
@@ -98,8 +146,13 @@ const crossings = (plot, { centres: [xs, ys] }, values, level) =>
   contour(values, xs.map(plot.x.to), ys.map(plot.y.to), level);
 
 const drawMarks = (plot, found, size) => {
-  for (const mark of found?.features ?? []) {
+  const features = found?.features ?? [];
+  const peaks = features.filter(({ kind }) => kind === "peak").map(({ at }) => plot.place(at));
+  // On a rim that is nearly level a saddle is found anywhere, and its sign must not hide that of a peak.
+  const hides = ([x, y]) => peaks.some(([px, py]) => Math.hypot(px - x, py - y) < 0.9 * size);
+  for (const mark of features) {
     const [x, y] = plot.place(mark.at);
+    if (mark.kind === "valley" && hides([x, y])) continue;
     drawMark(plot.pen, mark.kind, x, y, { colour: "#fff", halo: "#000", radius: 0.34 * size, alpha: mark.certain ? 1 : 0.5 });
   }
 };

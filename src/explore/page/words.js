@@ -107,14 +107,38 @@ const mathematics = ([tag, attributes, ...inner]) => {
   return node;
 };
 
-/** The equations typeset; as text for those who listen, and for browsers that know no MathML. */
+/** The parts of a row and of the rows in it, but for those in brackets. */
+const partsOf = ([tag, attributes, ...inner]) => {
+  const isOpen = tag === "mrow" && !(inner[0]?.[0] === "mo" && "([{|".includes(inner[0][2]));
+  return isOpen ? inner.flatMap(partsOf) : [[tag, attributes, ...inner]];
+};
+
+/** The pieces of an equation between which a line may break: before each sign of a sum. */
+const pieces = (layout) => {
+  const found = [];
+  let relation = true;
+  for (const part of partsOf(layout)) {
+    const isSign = part[0] === "mo" && ["+", "−", "-"].includes(part[2]);
+    // A sign behind a relation belongs to the term behind it.
+    if (!found.length || (isSign && !relation)) found.push([]);
+    const follows = isSign && !relation && found.length > 1;
+    found[found.length - 1].push(follows ? [part[0], { ...part[1], form: "infix" }, part[2]] : part);
+    relation = part[0] === "mo" && !isSign;
+  }
+  return found;
+};
+
+/** The equations typeset, each in pieces that stand on several lines where one has no room; as text for those who listen, and for browsers that know no MathML. */
 const equations = (scene) => scene.model.equations.map(({ text, layout }) => {
   if (typeof MathMLElement === "undefined") return make("code", {}, text);
-  const math = document.createElementNS(MATHML, "math");
-  math.setAttribute("aria-label", text);
-  math.setAttribute("displaystyle", "true");
-  math.append(mathematics(layout));
-  return math;
+  const typeset = (parts) => {
+    const math = document.createElementNS(MATHML, "math");
+    math.setAttribute("displaystyle", "true");
+    math.setAttribute("aria-hidden", "true");
+    math.append(mathematics(["mrow", {}, ...parts]));
+    return math;
+  };
+  return make("span", { class: "equation", role: "math", "aria-label": text }, pieces(layout).map(typeset));
 });
 
 /** Parameters and the sweep file. */

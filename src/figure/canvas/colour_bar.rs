@@ -5,7 +5,7 @@ use plotters_backend::text_anchor::HPos;
 use super::frame::{self, Scale};
 use super::heat::Picture;
 use super::letters;
-use super::look::{Look, on_heat};
+use super::look::{DECADES, Look, on_heat};
 use super::page::{Page, Rectangle, Shape, lettering};
 use super::style::{Stroke, TEXT};
 
@@ -14,7 +14,7 @@ const WIDTH: f64 = 13.0;
 /// Gap between map and bar.
 const GAP: f64 = 14.0;
 
-/// A colour bar, from zero to a largest value or over decades, laid out.
+/// A colour bar from zero, or from the floor of logarithmic colours, to a largest value, laid out.
 pub(crate) struct ColourBar {
     scale: Scale,
     title_width: f64,
@@ -23,15 +23,12 @@ pub(crate) struct ColourBar {
 impl ColourBar {
     /// Lays out a bar of the given height; the title (markup) stands above it.
     pub(crate) fn new(look: &Look, largest: f64, height: f64, title: &str) -> Self {
-        Self::of(look, Scale::vertical(look, (0.0, largest), height, title))
-    }
-
-    /// A bar of logarithms to base ten between two of them.
-    pub(crate) fn logarithmic(look: &Look, range: (f64, f64), height: f64, title: &str) -> Self {
-        Self::of(look, Scale::logarithmic(look, range, height, title))
-    }
-
-    fn of(look: &Look, scale: Scale) -> Self {
+        let scale = if look.is_logarithmic && largest > 0.0 {
+            let top = largest.log10();
+            Scale::logarithmic(look, (top - DECADES, top), height, title)
+        } else {
+            Scale::vertical(look, (0.0, largest), height, title)
+        };
         let title_width = letters::text_width(look, scale.title(), TEXT, false);
         Self { scale, title_width }
     }
@@ -53,11 +50,11 @@ impl ColourBar {
             width: WIDTH,
             ..map
         };
-        let ramp = Picture::new(page.look(), (1, 255), |_, row| Some(row as f64 / 254.0));
+        let ramp = Picture::ramp(page.look());
         let corners = [(bar.left, bar.top), (bar.right(), bar.bottom())];
         page.draw(&corners, Shape::Image(ramp));
         for &share in marks {
-            let y = bar.bottom() - share * bar.height;
+            let y = bar.bottom() - page.look().along_colours(share) * bar.height;
             let stroke = Stroke::solid(on_heat(page.look(), share), 1.0);
             page.draw(&[(bar.left, y), (bar.right(), y)], Shape::Line(stroke));
         }

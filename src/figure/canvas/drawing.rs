@@ -31,6 +31,24 @@ impl Drawing {
         Ink::new(self.look.resolve(PAPER))
     }
 
+    /// Its height in figure pixels.
+    pub(crate) fn height(&self) -> f64 {
+        f64::from(self.size.1) / UNITS
+    }
+
+    /// Makes the page so many figure pixels high, with what is on it in the middle; nothing where it is as high.
+    pub(crate) fn centre(&mut self, height: f64) {
+        let wanted = (height * UNITS).round() as u32;
+        if wanted <= self.size.1 {
+            return;
+        }
+        let down = ((wanted - self.size.1) / 2) as i32;
+        self.size.1 = wanted;
+        for element in &mut self.elements {
+            element.move_down(down);
+        }
+    }
+
     /// Points of a unit.
     pub(super) fn points(&self) -> f64 {
         self.look.points / UNITS
@@ -57,6 +75,23 @@ pub(super) enum Element {
     Image(BackendCoord, (u32, u32), Picture),
     /// A line of lettering.
     Text(Text),
+}
+
+impl Element {
+    /// Moves it by so many units.
+    fn move_down(&mut self, by: i32) {
+        match self {
+            Self::Line(points, _) | Self::Area(points, _) => {
+                points.iter_mut().for_each(|point| point.1 += by);
+            }
+            Self::Facets(facets, _) => {
+                let points = facets.iter_mut().flatten();
+                points.for_each(|point| point.1 += by);
+            }
+            Self::Disc(at, ..) | Self::Image(at, ..) => at.1 += by,
+            Self::Text(text) => text.at.1 += by,
+        }
+    }
 }
 
 /// A colour with its opacity.

@@ -34,7 +34,8 @@ impl Picture {
         });
         let number = |column: usize, row: usize| match share(column, row) {
             Some(share) if !share.is_nan() => {
-                (share.clamp(0.0, 1.0) * (COLOURS - 1) as f64).round() as u8
+                let along = look.along_colours(share).clamp(0.0, 1.0);
+                (along * (COLOURS - 1) as f64).round() as u8
             }
             _ => NOTHING,
         };
@@ -43,6 +44,16 @@ impl Picture {
             palette: colours.chain([[255, 255, 255, 0]]).collect(),
             numbers: pixels(size, number),
         }
+    }
+
+    /// All colours from the first to the last, upward.
+    pub(crate) fn ramp(look: &Look) -> Self {
+        let linear = Look {
+            is_logarithmic: false,
+            ..*look
+        };
+        let last = (COLOURS - 1) as f64;
+        Self::new(&linear, (1, COLOURS), |_, row| Some(row as f64 / last))
     }
 
     /// A picture of areas, each of one colour: the pixel `(column, row)`, counted from the **lower** left, has the

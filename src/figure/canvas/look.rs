@@ -3,17 +3,30 @@
 
 use plotters::style::colors::colormaps::{ColorMap as _, ViridisRGB};
 
-use super::style::{BLACK, CURVE_LINE, Colour, PAPER, Stroke, TEXT, WHITE, luminance};
+use super::style::{BLACK, CURVE_LINE, Colour, INK, PAPER, Stroke, TEXT, WHITE, luminance};
 use crate::figure::style::{
-    ColourMap, FigureStyle, Ground, LEAST_WIDTH, MOST_WIDTH, POINTS_A_MILLIMETRE,
+    ColourMap, ColourScale, FigureStyle, Ground, LEAST_WIDTH, MOST_WIDTH, POINTS_A_MILLIMETRE,
     TEXT_OF_OWN_WIDTH, Typeface,
 };
+
+/// Decades of logarithmic colours below the largest density.
+pub(crate) const DECADES: f64 = 4.0;
+
+/// A page is never lower than so many figure pixels, unless its height is fixed: with less, panels have no room for
+/// their own titles.
+const LEAST_HEIGHT: f64 = 600.0;
 
 /// How a drawing looks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Look {
     /// Width of every page, in figure pixels; `None` for each figure's own.
     pub(crate) page: Option<f64>,
+    /// The greatest height of a page, in figure pixels.
+    pub(crate) greatest_height: f64,
+    /// Whether every page is as high as that.
+    pub(crate) has_fixed_height: bool,
+    /// Heights of panels as a multiple of the usual ones: what fits a figure to its page.
+    pub(crate) tall: f64,
     /// Points of a figure pixel.
     pub(crate) points: f64,
     /// Weight of lines, as a multiple of the usual one.
@@ -24,6 +37,8 @@ pub(crate) struct Look {
     pub(crate) typeface: Typeface,
     /// Colours of maps.
     pub(crate) colours: ColourMap,
+    /// Whether colours of heat maps are logarithmic in the density.
+    pub(crate) is_logarithmic: bool,
     /// Whether the ground is dark.
     pub(crate) is_dark: bool,
     /// Whether the title of the run stands above.
@@ -52,16 +67,27 @@ impl FigureStyle {
             let width = usable(width * POINTS_A_MILLIMETRE, bounds.0, bounds);
             width / points
         });
+        let own = self.width.greatest_height() * POINTS_A_MILLIMETRE / points;
+        // Lettering that is very large for a page takes more of it.
+        let greatest_height = if self.width.has_fixed_height() {
+            own
+        } else {
+            own.max(LEAST_HEIGHT)
+        };
         let line = self
             .line
             .map(|line| usable(line, 1.0, (0.01, 100.0)) / (CURVE_LINE * points));
         Look {
             page,
+            greatest_height,
+            has_fixed_height: self.width.has_fixed_height(),
+            tall: 1.0,
             points,
             lines: line.unwrap_or(1.0),
             dpi: usable(self.dpi, Self::default().dpi, (20.0, 2400.0)),
             typeface: self.font,
             colours: self.colours,
+            is_logarithmic: self.scale == ColourScale::Log,
             is_dark: self.ground == Ground::Dark,
             has_title: self.title,
             has_letters: self.letters,
@@ -124,16 +150,43 @@ impl Look {
         self.page.map_or(own, |page| (page - beside).max(40.0))
     }
 
+    /// Columns of a grid with as few places left empty as the rows that so many columns need have.
+    pub(crate) fn even_columns(panels: usize, columns: usize) -> usize {
+        let rows = panels.max(1).div_ceil(columns.max(1));
+        panels.max(1).div_ceil(rows)
+    }
+
     /// A panel's height on a page of this width: `own` belongs to a page that is `usual` wide.
     pub(crate) fn height(&self, own: f64, usual: f64) -> f64 {
+        self.tall * self.usual_height(own, usual)
+    }
+
+    /// The same before a figure is fitted to its page.
+    pub(crate) fn usual_height(&self, own: f64, usual: f64) -> f64 {
         self.page
             .map_or(own, |page| own * (page / usual).clamp(0.62, 1.3))
+    }
+
+    /// Where the colour of a density, as a share of the largest, stands between the ends of the colours.
+    pub(crate) fn along_colours(&self, share: f64) -> f64 {
+        if self.is_logarithmic && !share.is_nan() {
+            (1.0 + share.max(0.0).log10() / DECADES).clamp(0.0, 1.0)
+        } else {
+            share
+        }
     }
 
     /// An opaque colour of areas with lines over them: so much of the colour of a curve, the rest paper. The colours of
     /// the first curves come last.
     pub(crate) fn tint(&self, share: f64, number: usize) -> (u8, u8, u8) {
         const ORDER: [usize; 6] = [5, 6, 2, 3, 1, 0];
+        if self.colours == ColourMap::Grey {
+            // Greys are told apart by their lightness alone.
+            let ink = 0.08 + 0.13 * (number % ORDER.len()) as f64;
+            let (ground, letters) = (self.resolve(PAPER).0.0, self.resolve(INK).0.0);
+            let grey = (ink * f64::from(letters) + (1.0 - ink) * f64::from(ground)).round() as u8;
+            return (grey, grey, grey);
+        }
         let own = Stroke::curve(ORDER[number % ORDER.len()]).colour;
         let ((r, g, b), paper) = (self.resolve(own).0, self.resolve(PAPER).0);
         let mix = |own: u8, paper: u8| {
@@ -149,13 +202,22 @@ impl Look {
         } else {
             colour.light
         };
-        (rgb, colour.alpha)
+        match self.colours {
+            ColourMap::Grey => (grey(rgb), colour.alpha),
+            _ => (rgb, colour.alpha),
+        }
     }
+}
+
+/// The grey of the same luminance.
+fn grey(rgb: (u8, u8, u8)) -> (u8, u8, u8) {
+    let grey = (255.0 * luminance(rgb).powf(1.0 / 2.2)).round() as u8;
+    (grey, grey, grey)
 }
 
 /// Black or white, whichever is seen better on the colour of a share (0 to 1) of the largest value.
 pub(crate) fn on_heat(look: &Look, share: f64) -> Colour {
-    let ground = luminance(look.colours.colour(share));
+    let ground = luminance(look.colours.colour(look.along_colours(share)));
     // Against white the contrast is 3.3 to one here; thin white lines are seen better than thin black ones.
     if ground > 0.27 { BLACK } else { WHITE }
 }

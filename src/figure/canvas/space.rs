@@ -109,7 +109,8 @@ impl Space {
             floor(ranges.y, [0.0, 1.0, 0.0]),
             high,
         ];
-        let right = 0.5 * axes[1].label_width();
+        // A label at the far end of the ordinate stands out by more than its half.
+        let right = 0.5 * axes[1].label_width() + 3.0;
         let left = Self::left(look, &axes);
         (((width - left - right) / wide).max(30.0), axes)
     }

@@ -65,6 +65,7 @@ fn draw(comparison: &Comparison, observable: Observable, print: &Print<'_>) -> D
     let (Observable::Joint(first, second), false) = (observable, rows.is_empty()) else {
         return None;
     };
+    let count = rows.len();
     let mut window: Option<((f64, f64), (f64, f64))> = None;
     for (_, found) in rows.iter().flatten() {
         if let Some((x, y)) = windows(std::slice::from_ref(found)) {
@@ -73,18 +74,20 @@ fn draw(comparison: &Comparison, observable: Observable, print: &Print<'_>) -> D
         }
     }
     let (x, y) = window?;
+    let rows = &rows[print.share(count)];
     let density = names::density(family, observable);
     let rough = ColourBar::new(look, 1.0, SIDE, &density);
     let left = MARGIN + Scale::vertical(look, y, SIDE, &names::axis(family, second)).left();
     let most = rows.iter().map(Vec::len).max().unwrap_or(1);
     let (columns, side) = arrangement(look, most, left + rough.width() + 12.0 + MARGIN);
     let across = Scale::horizontal(look, x, side, &names::axis(family, first));
-    let up = Scale::vertical(look, y, side, &names::axis(family, second));
+    let high = look.tall * side;
+    let up = Scale::vertical(look, y, high, &names::axis(family, second));
     let mut bars = Vec::new();
-    for row in &rows {
+    for row in rows {
         let largest = row.iter().map(|(_, found)| found.shown.largest);
         let largest = largest.fold(0.0, f64::max);
-        bars.push((largest, ColourBar::new(look, largest, side, &density)));
+        bars.push((largest, ColourBar::new(look, largest, high, &density)));
     }
     let widest = bars.iter().map(|(_, bar)| bar.width()).fold(0.0, f64::max);
     // On a narrow page the value has a line of its own.
@@ -93,7 +96,7 @@ fn draw(comparison: &Comparison, observable: Observable, print: &Print<'_>) -> D
     } else {
         ABOVE
     };
-    let step = (side + BETWEEN.0, above + side + BETWEEN.1);
+    let step = (side + BETWEEN.0, above + high + BETWEEN.1);
     let own = left + columns as f64 * step.0 - BETWEEN.0 + widest + MARGIN;
     let width = look.page.unwrap_or(own);
     let heading = Heading::new(look, print.title, width);
@@ -106,7 +109,7 @@ fn draw(comparison: &Comparison, observable: Observable, print: &Print<'_>) -> D
         for (part, maps) in row.chunks(columns).enumerate() {
             for (column, (method, found)) in maps.iter().enumerate() {
                 let top = heading.height() + above + line as f64 * step.1;
-                let map = Rectangle::new((left + column as f64 * step.0, top), (side, side));
+                let map = Rectangle::new((left + column as f64 * step.0, top), (side, high));
                 let is_first = column == 0 && part == 0;
                 write_lines(&page, map, (*method, is_first), found.value, family);
                 draw_map(&page, map, found, (x, y), *largest);
@@ -122,9 +125,10 @@ fn draw(comparison: &Comparison, observable: Observable, print: &Print<'_>) -> D
     let density = caption::density(family, observable);
     let what = format!("Steady-state joint density {density}");
     let how = "of the generator followed between the cells by parabolas with their averages.";
+    let how = format!("{how}{}", caption::floor(look));
     let table = table(comparison, |one| *one == observable);
-    let caption = caption_of(comparison, &what, how);
-    Some(Figure::new(&page, caption, table))
+    let caption = caption_of(comparison, &what, &how);
+    Some(Figure::new(&page, caption, table).of_panels(count))
 }
 
 /// Columns, and the side of a map: all methods side by side, as far as they fit on a given page.

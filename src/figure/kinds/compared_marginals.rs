@@ -134,8 +134,10 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     let watched: Vec<Observable> = watched.filter(is_marginal).collect();
     let has_density = |value: &&ComparedValue| value.solved.iter().any(|s| !s.densities.is_empty());
     let values: Vec<&ComparedValue> = comparison.values.iter().filter(has_density).collect();
+    let (count, share) = (values.len(), print.share(values.len()));
+    let before = share.start * watched.len();
     let mut all: Vec<Laid<'_>> = Vec::new();
-    for &value in &values {
+    for &value in &values[share] {
         for &observable in &watched {
             all.extend(lay_out((comparison, print), value, observable));
         }
@@ -151,7 +153,10 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     let columns = Look::columns(watched.len(), |columns| width(columns) >= NARROWEST);
     let wide = width(columns);
     let rows = all.len().div_ceil(columns);
-    let step = (room + wide + BETWEEN.0, ABOVE + PANEL.1 + BETWEEN.1);
+    let step = (
+        room + wide + BETWEEN.0,
+        ABOVE + look.tall * PANEL.1 + BETWEEN.1,
+    );
     let page_width = 2.0 * MARGIN + columns as f64 * step.0 - BETWEEN.0 + BESIDE;
     let heading = Heading::new(look, print.title, page_width);
     let legend = Legend::new(look, entries(), page_width - 2.0 * MARGIN);
@@ -167,10 +172,10 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     let page = Page::new(look, page_width, height);
     heading.draw(&page);
     legend.draw(&page, 0.5 * page_width, heading.height());
-    let first = Rectangle::new((MARGIN + room, top + ABOVE), (wide, PANEL.1));
+    let first = Rectangle::new((MARGIN + room, top + ABOVE), (wide, look.tall * PANEL.1));
     for (number, laid) in all.iter().enumerate() {
         let rect = first.tile(number, columns, step);
-        let above = with_letter(look, number, names::at(family, laid.value.value));
+        let above = with_letter(look, before + number, names::at(family, laid.value.value));
         let place = (rect.left, rect.top - 0.7 * TEXT);
         page.text(place, lettering(above, HPos::Left));
         draw_panel(&page, laid, rect, labelled_below(number), family);
@@ -178,11 +183,7 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     let how = "of Monte Carlo with two standard errors, of the generator followed between the cells by parabolas with \
                their averages.";
     let caption = caption_of(comparison, "Steady-state marginal densities", how);
-    Some(Figure::new(
-        &page,
-        caption,
-        self::rows(comparison, is_marginal),
-    ))
+    Some(Figure::new(&page, caption, self::rows(comparison, is_marginal)).of_panels(count))
 }
 
 fn entries() -> Vec<(Sample, String)> {
@@ -222,7 +223,12 @@ fn lay_out<'a>(
         observable,
         axis,
         window,
-        up: Scale::vertical(&print.look, (0.0, 1.08 * highest), PANEL.1, &title),
+        up: Scale::vertical(
+            &print.look,
+            (0.0, 1.08 * highest),
+            print.look.tall * PANEL.1,
+            &title,
+        ),
     })
 }
 

@@ -1,7 +1,7 @@
 //! The P-bifurcation diagram of a marginal: its density over the parameter as a heat map, the branches of
 //! its peaks and valleys, and the labelled bifurcations.
 
-use crate::continuation::{Point, PointStatus, SweepResult};
+use crate::continuation::{LocateOptions, Point, PointStatus, SweepResult};
 use crate::density::Density;
 use crate::space::Axis;
 use crate::topology::FeatureKind;
@@ -18,16 +18,13 @@ use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::along::parameter_range;
 use crate::figure::parts::bifurcations::Labels;
 use crate::figure::parts::branches::{Branch, branches};
+use crate::figure::parts::meeting::{located, meet};
 use crate::figure::parts::view::{self, View, middles};
 use crate::figure::parts::{caption, names, table};
 
 /// Size of the map on a page of its own width, in pixels, and that width.
 const MAP: (f64, f64) = (380.0, 250.0);
 const USUAL: f64 = 505.0;
-
-/// Neighbouring densities at most so far apart (Hellinger) are joined: a straight line between them errs by about its
-/// square.
-const ALIKE: f64 = 0.1;
 
 /// A diagram an observed marginal.
 pub(super) const KIND: Kind = Kind {
@@ -57,7 +54,8 @@ fn draw(result: &SweepResult, (observable, axis): (usize, usize), print: &Print<
     let above = labels.height().max(ColourBar::above());
     let map = Rectangle::new((left, heading.height() + above), (wide, high));
     let kinds = [FeatureKind::Peak, FeatureKind::Valley];
-    let followed = kinds.map(|kind| branches(points, observable, kind, window));
+    let mut followed = kinds.map(|kind| branches(points, observable, kind, window));
+    meet(&mut followed, &located(result, watched), points, window);
     let entries = entries(points, observable, &followed, &labels);
     let legend = Legend::new(look, entries, width - 2.0 * MARGIN);
     let below = map.bottom() + Scale::below();
@@ -76,10 +74,11 @@ fn draw(result: &SweepResult, (observable, axis): (usize, usize), print: &Print<
     let seen = format!(
         "Steady-state marginal density {} over {} (colours), with its peaks (solid) and valleys (dashed).",
         caption::density(family, watched),
-        family.parameter()
+        caption::parameter(family)
     );
     let between = caption::between_cells(result, |one| one == watched);
-    let caption = caption::of_sweep(result, seen, &[between, caption::bifurcations(result)]);
+    let marks = format!("{}{}", caption::bifurcations(result), caption::floor(look));
+    let caption = caption::of_sweep(result, seen, &[between, marks]);
     let points: Vec<&Point> = points.iter().collect();
     let table = table::of_marginals(result, (&[observable], &points), |one, _| table::cells(one));
     Some(Figure::new(&page, caption, table))
@@ -107,15 +106,27 @@ pub(super) fn hatch_column(page: &Page, panel: &Panel, edges: &[f64], window: (f
 struct Columns<'a> {
     points: &'a [Point],
     shown: Vec<Option<View<'a>>>,
+    /// Whether neighbours are joined.
+    are_joined: bool,
 }
 
 impl<'a> Columns<'a> {
     fn new(points: &'a [Point], observable: usize) -> Self {
         let shown = points.iter();
         let shown = shown.map(|point| Some(View::new(view::density(point, observable)?)));
+        let shown: Vec<Option<View<'_>>> = shown.collect();
+        let pairs = shown.windows(2).zip(&points[1.min(points.len())..]);
+        let mut joinable = pairs.filter(|(pair, _)| pair.iter().all(Option::is_some));
+        // What a sweep accepts between neighbours is what may be joined: a straight line between two errs by about the
+        // square of their distance (Hellinger). Where one step is longer every value has its column, so that no part of
+        // a figure looks more certain than another.
+        let most = LocateOptions::default().largest_distance;
+        let are_joined =
+            joinable.all(|(_, point)| point.distance.is_some_and(|distance| distance <= most));
         Self {
             points,
-            shown: shown.collect(),
+            shown,
+            are_joined,
         }
     }
 
@@ -189,8 +200,8 @@ impl<'a> Columns<'a> {
         view(below)?;
         view(above)?;
         let (from, to) = (self.points.get(below)?, self.points.get(above)?);
-        let is_near = to.distance.is_some_and(|distance| distance <= ALIKE);
-        is_near.then(|| (place - from.value) / (to.value - from.value))
+        self.are_joined
+            .then(|| (place - from.value) / (to.value - from.value))
     }
 }
 

@@ -7,6 +7,7 @@ use super::{Drawn, Kind, Sketch};
 use crate::figure::canvas::style::Stroke;
 use crate::figure::figures::Print;
 use crate::figure::parts::along::{self, Curve, Track};
+use crate::figure::parts::caption;
 use crate::figure::parts::table::{self, number as number_of};
 
 /// Height of a panel, in pixels.
@@ -30,8 +31,38 @@ const NUMBERS: [Number; 6] = [
     ("edge mass", true, |point| {
         point.report.edge_mass().or(Some(0.0))
     }),
-    ("distance", false, |point| point.distance),
+    (DISTANCE, false, |point| point.distance),
 ];
+
+/// The distance to the density before, as it is drawn and as the table has it.
+const DISTANCE: &str = "distance a step";
+
+/// The steps of the parameter along a sweep.
+struct Steps {
+    values: Vec<f64>,
+    /// Their median.
+    usual: f64,
+}
+
+impl Steps {
+    fn new(result: &SweepResult) -> Self {
+        let values: Vec<f64> = result.points.iter().map(|point| point.value).collect();
+        let mut steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        steps.sort_by(f64::total_cmp);
+        let usual = steps.get(steps.len() / 2).copied();
+        Self {
+            values,
+            usual: usual.unwrap_or(1.0),
+        }
+    }
+
+    /// The step to a point.
+    fn before(&self, point: &Point) -> f64 {
+        let number = self.values.partition_point(|value| *value < point.value);
+        let before = number.checked_sub(1).map(|before| self.values[before]);
+        before.map_or(self.usual, |before| point.value - before)
+    }
+}
 
 /// The figure of a sweep.
 pub(super) const KIND: Kind = Kind {
@@ -53,10 +84,16 @@ fn is_solved(point: &Point) -> bool {
 
 /// The figure; `None` where there is nothing to tell.
 fn draw(result: &SweepResult, print: &Print<'_>) -> Drawn {
+    let steps = Steps::new(result);
+    // Values that were added lie nearer to each other, and so do their densities.
+    let per_step = |point: &Point, title: &str| match title {
+        DISTANCE => steps.usual / steps.before(point),
+        _ => 1.0,
+    };
     let track = |(title, is_logarithmic, number): &Number| {
         let points = result.points.iter().filter(|point| is_solved(point));
         let places: Vec<(f64, f64)> = points
-            .filter_map(|point| Some((point.value, number(point)?)))
+            .filter_map(|point| Some((point.value, number(point)? * per_step(point, title))))
             // Zero has no place on a logarithmic axis.
             .filter(|(_, value)| value.is_finite() && !(*is_logarithmic && *value == 0.0))
             .collect();
@@ -78,8 +115,9 @@ fn draw(result: &SweepResult, print: &Print<'_>) -> Drawn {
     let tracks: Vec<Track> = NUMBERS.iter().filter_map(track).collect();
     let parameter = result.subject.family.parameter();
     let seen = format!(
-        "How well each value of {parameter} was solved: what is left of the equation, what leaves the domain, and the Hellinger \
-         distance between neighbouring densities."
+        "How well each value of {} was solved: what is left of the equation, what leaves the domain, and the Hellinger \
+         distance between neighbouring densities, times the usual step of the parameter over the one between them.",
+        caption::parameter(&result.subject.family)
     );
     let columns = NUMBERS.map(|(title, ..)| title.replace(' ', "_"));
     let columns: Vec<&str> = [parameter, "status"]
@@ -94,7 +132,7 @@ fn draw(result: &SweepResult, print: &Print<'_>) -> Drawn {
         // Mass at an edge that is below zero by rounding is none.
         let numbers = NUMBERS.map(|(title, _, number)| match number(point) {
             Some(mass) if title == "edge mass" => Some(number_of(mass.max(0.0))),
-            other => other.map(number_of),
+            other => other.map(|value| number_of(value * per_step(point, title))),
         });
         let numbers = numbers.into_iter().map(Option::unwrap_or_default);
         named.into_iter().chain(numbers).collect()

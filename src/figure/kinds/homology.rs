@@ -193,9 +193,10 @@ fn draw(result: &SweepResult, number: usize, print: &Print<'_>) -> Drawn {
     legend.draw(&page, map.left + 0.5 * map.width, below);
     let seen = format!(
         "Betti numbers of the sets where the steady-state density {} exceeds a level: their pieces and holes, over {} and the level as a share of \
-         the highest peak.",
+         the highest peak. Beside a P-bifurcation the levels of two pieces are as few as the valley is shallow, and \
+         end in a tip at its line.",
         caption::density(family, watched),
-        family.parameter()
+        caption::parameter(family)
     );
     let caption = caption::of_sweep(result, seen, &[caption::bifurcations(result)]);
     Some(Figure::new(&page, caption, rows(result, &columns)))

@@ -68,7 +68,7 @@ fn draw(result: &SweepResult, number: usize, print: &Print<'_>) -> Drawn {
         "Indicators of P-bifurcations of the steady-state density {} over {}; a P-bifurcation is where one is zero, bands are \
          systematic errors and two standard errors of sampling.",
         caption::density(family, watched),
-        family.parameter()
+        caption::parameter(family)
     );
     let own = all().flat_map(|(value, all)| all.iter().map(move |one| (value, one)));
     let rows = own.map(|(value, one)| {

@@ -5,14 +5,17 @@ use super::{Kind, Sketch, Sweep};
 use crate::continuation::{Point, SweepResult, evenly_spaced};
 use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::frame::Scale;
+use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::Page;
 use crate::figure::canvas::style::MARGIN;
 use crate::figure::figures::{Figure, Print};
-use crate::figure::parts::joint_map::{Joint, LEVELS, draw_map, open_page, write_above};
+use crate::figure::parts::joint_map::{Joint, draw_map, levels, open_page, write_above};
 use crate::figure::parts::{caption, joint_sheet, names, table, view};
 
 /// What a map is, for captions.
-const WAY: &str = "as a map with contours at 10, 30, 50, 70 and 90 % of its maximum";
+const WAY: &str = "as a map with contours at LEVELS of its maximum";
+/// What stands for the levels of contours there, which depend on the colours.
+const CONTOURS: &str = "LEVELS";
 /// Small multiples of a sweep: one to so many values of the parameter.
 const MULTIPLES: usize = 12;
 /// Side of the map of a single figure, in pixels.
@@ -58,9 +61,9 @@ impl<'a> Sweep<'a> {
     ) -> Sketch<'a> {
         let (result, points) = (self.result, points.to_vec());
         Sketch::new(name, move |print| {
-            let joint = Joint::new(result, number, &points)?;
-            let page = draw(&joint, print);
-            page.map(|page| figure(&joint, way, &page))
+            let joint = Joint::new(result, number, &points)?.on_page(print);
+            let page = draw(&joint, print)?;
+            Some(figure((&joint, &print.look), way, &page).of_panels(joint.count()))
         })
     }
 
@@ -81,8 +84,9 @@ impl<'a> Sweep<'a> {
 }
 
 /// A page that shows joint densities, in the way that the words say.
-fn figure(joint: &Joint<'_>, way: &str, page: &Page) -> Figure {
-    let (result, points) = (joint.result, joint.points);
+fn figure((joint, look): (&Joint<'_>, &Look), way: &str, page: &Page) -> Figure {
+    let (result, points) = (joint.result, &joint.points[joint.shown.clone()]);
+    let way = way.replace(CONTOURS, caption::contours(look));
     let (family, watched) = (
         &result.subject.family,
         result.subject.observables[joint.number],
@@ -94,7 +98,10 @@ fn figure(joint: &Joint<'_>, way: &str, page: &Page) -> Figure {
     );
     let between = caption::between_cells(result, |one| one == watched);
     let is_map = way.contains("map");
-    let marks = is_map.then(|| "Marked are peaks (+) and craters (o).".to_owned());
+    let marks = is_map.then(|| {
+        let floor = caption::floor(look);
+        format!("Marked are peaks (+) and craters (o).{floor}")
+    });
     let marked = [between, marks.unwrap_or_default()];
     let table = table::of_joint(result, joint.number, points);
     Figure::new(page, caption::of_sweep(result, seen, &marked), table)
@@ -119,7 +126,7 @@ fn draw_single(joint: &Joint<'_>, print: &Print<'_>) -> Option<Page> {
     let [first, second, density] = &joint.titles;
     let largest = found.shown.largest;
     let own = |page: f64| (0.68 * page).clamp(170.0, TALLEST);
-    let high = look.page.map_or(SINGLE, own);
+    let high = look.tall * look.page.map_or(SINGLE, own);
     let up = Scale::vertical(look, y, high, second);
     let bar = ColourBar::new(look, largest, high, density);
     let left = MARGIN + up.left();
@@ -131,6 +138,6 @@ fn draw_single(joint: &Joint<'_>, print: &Print<'_>) -> Option<Page> {
     draw_map(&page, map, found, (x, y), largest);
     across.draw_below(&page, map, true);
     up.draw_left(&page, map, true);
-    bar.draw(&page, map, &LEVELS);
+    bar.draw(&page, map, levels(look));
     Some(page)
 }

@@ -10,8 +10,9 @@ use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::legend::{Legend, Sample};
 use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Heading, Page, Rectangle, Shape};
-use crate::figure::canvas::style::{MARGIN, Stroke};
+use crate::figure::canvas::style::{MARGIN, Stroke, TEXT};
 use crate::figure::figures::{Figure, Print};
+use crate::figure::parts::joint_map::{with_letter, write_above};
 use crate::figure::parts::view::View;
 use crate::figure::parts::{caption, names, table, view};
 use crate::system::Family;
@@ -139,9 +140,15 @@ pub(super) fn draw_overlaid(
         (sample, names::at(family, point.value))
     });
     let legend = Legend::new(look, entries.collect(), page_width - 2.0 * MARGIN);
-    let top = heading.height() + legend.height() + 6.0;
-    let step = high + Scale::below() + MARGIN;
-    let page = Page::new(look, page_width, top + rows as f64 * step);
+    let has_letters = look.has_letters && all.len() > 1;
+    let above = if has_letters { 1.5 * TEXT } else { 6.0 };
+    let top = heading.height() + legend.height() + above;
+    let step = high + Scale::below() + if has_letters { above } else { MARGIN };
+    let page = Page::new(
+        look,
+        page_width,
+        top - above + rows as f64 * step + above.min(MARGIN),
+    );
     heading.draw(&page);
     legend.draw(&page, 0.5 * page_width, heading.height());
     for (number, one) in all.iter().enumerate() {
@@ -151,6 +158,9 @@ pub(super) fn draw_overlaid(
         let rect = Rectangle::new((left, top + row as f64 * step), (wide, high));
         let across = Scale::horizontal(look, one.window, wide, &one.axis);
         draw_panel(&page, (one, &across), rect);
+        if has_letters {
+            write_above(&page, rect, with_letter(look, number, String::new()));
+        }
     }
     Some(page)
 }

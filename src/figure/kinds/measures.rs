@@ -7,6 +7,7 @@ use crate::figure::canvas::style::{FRAME_LINE, GREY, Stroke};
 use crate::figure::canvas::symbols;
 use crate::figure::figures::Print;
 use crate::figure::parts::along::{self, Curve, Track};
+use crate::figure::parts::caption;
 use crate::figure::parts::table::{self, number};
 
 /// Height of a panel among others, and of one by itself, in pixels.
@@ -130,6 +131,23 @@ fn levels(result: &SweepResult, measure: &Along) -> Vec<Curve> {
     lines.chain(drops).collect()
 }
 
+/// The name of a measure with what it is of lowered, as its symbol: `sd_y` becomes sd with an index ẋ.
+fn title(result: &SweepResult, name: &str) -> String {
+    let family = &result.subject.family;
+    let axes = 0..family.model().axes.len();
+    let index = |(word, of): (&str, &str)| {
+        let axis = axes.clone().find(|&axis| family.axis(axis) == of)?;
+        let of = family.axis_symbol(axis);
+        Some(format!(
+            "{}_{{{}}}",
+            symbols::plain(word),
+            of.replace(['{', '}'], "")
+        ))
+    };
+    let indexed = name.rsplit_once('_').and_then(index);
+    indexed.unwrap_or_else(|| symbols::plain(&name.replace('_', " ")))
+}
+
 /// A panel each; `None` without a measure.
 fn draw(result: &SweepResult, all: &[Along], (height, print): (f64, &Print<'_>)) -> Drawn {
     let track = |one: &Along| {
@@ -148,7 +166,7 @@ fn draw(result: &SweepResult, all: &[Along], (height, print): (f64, &Print<'_>))
         }];
         curves.extend(levels(result, one));
         Track {
-            title: symbols::plain(&format!("{}{unit}", one.name)),
+            title: format!("{}{}", title(result, &one.name), symbols::plain(&unit)),
             is_logarithmic: one.is_over_decades(),
             has_zero: false,
             least: errors
@@ -161,8 +179,9 @@ fn draw(result: &SweepResult, all: &[Along], (height, print): (f64, &Print<'_>))
     let tracks: Vec<Track> = all.iter().map(track).collect();
     let names: Vec<&str> = all.iter().map(|one| one.name.as_str()).collect();
     let parameter = result.subject.family.parameter();
+    let symbol = caption::parameter(&result.subject.family);
     let mut seen = format!(
-        "Measures of the steady state over {parameter}, each with the band of its error: {}.",
+        "Measures of the steady state over {symbol}, each with the band of its error: {}.",
         names.join(", ")
     );
     for crossing in crossings(result).filter(|one| names.contains(&one.asked.measure.as_str())) {
@@ -170,9 +189,8 @@ fn draw(result: &SweepResult, all: &[Along], (height, print): (f64, &Print<'_>))
         let [value, error] = [crossing.value, crossing.error].map(number);
         let (measure, level) = (&crossing.asked.measure, number(crossing.asked.level));
         let label = &crossing.label;
-        seen += &format!(
-            " {label}: {measure} {way} through {level} at {parameter} = {value} ± {error}."
-        );
+        seen +=
+            &format!(" {label}: {measure} {way} through {level} at {symbol} = {value} ± {error}.");
     }
     let rows = all.iter().flat_map(|one| {
         one.values.iter().map(|&(at, value, error)| {

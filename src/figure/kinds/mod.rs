@@ -22,7 +22,7 @@ mod surface;
 mod time_to_accuracy;
 
 use super::figures::{Figure, Print};
-use super::parts::{names, view};
+use super::parts::{names, pages, view};
 use crate::compare::Comparison;
 use crate::continuation::{Point, SweepResult};
 use crate::density::Observable;
@@ -161,10 +161,18 @@ impl<'a> Sketch<'a> {
         }
     }
 
-    /// Draws it; `None` where there is nothing to see.
-    pub(super) fn draw(&self, print: &Print<'_>) -> Drawn {
-        let mut figure = (self.draw)(print)?;
-        figure.name.clone_from(&self.name);
-        Some(figure)
+    /// Draws it, on several pages where one has no room for it; none where there is nothing to see.
+    pub(super) fn draw(&self, print: &Print<'_>) -> Vec<Figure> {
+        let mut drawn = pages::fitted(print, &*self.draw);
+        let count = drawn.len();
+        for (number, figure) in drawn.iter_mut().enumerate() {
+            figure.name.clone_from(&self.name);
+            if count > 1 {
+                figure.name += &format!("_{}", number + 1);
+                let caption = figure.caption.trim_end();
+                figure.caption = format!("{caption} Page {} of {count}.\n", number + 1);
+            }
+        }
+        drawn
     }
 }

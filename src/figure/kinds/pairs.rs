@@ -2,7 +2,7 @@
 //! them.
 
 use super::Kind;
-use super::surface::{COARSE, draw_surface, ranges};
+use super::surface::{COARSE, draw_surface, lowered, ranges};
 use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::frame::Scale;
 use crate::figure::canvas::look::Look;
@@ -20,8 +20,12 @@ const MAP: f64 = 190.0;
 const ABOVE: f64 = 2.0 * TEXT;
 /// Gap between surface and map.
 const BETWEEN: f64 = 16.0;
-/// On a page narrower than this there is no colour bar: the surface has the same colours, and an axis.
+/// In a row narrower than this there is no colour bar: the surface has the same colours, and an axis.
 const NARROW: f64 = 540.0;
+/// The narrowest row beside another.
+const COLUMN: f64 = 400.0;
+/// Room right of a map without a colour bar.
+const BESIDE: f64 = 6.0;
 
 pub(super) const KIND: Kind = Kind {
     names: &["pairs"],
@@ -39,83 +43,138 @@ pub(super) const KIND: Kind = Kind {
 
 /// Where surface and map of a row stand, in pixels.
 struct Row {
-    page: f64,
+    /// Width of the row with its margins.
+    width: f64,
     surface: f64,
     map: (f64, f64),
 }
 
 impl Row {
-    /// `left` and `right` are what stands beside the map.
-    fn new(look: &Look, left: f64, right: f64) -> Self {
-        let Some(page) = look.page else {
+    /// `left` and `right` are what stands beside the map; the row is `given` wide, or as wide as its own.
+    fn new(given: Option<f64>, tall: f64, (left, right): (f64, f64)) -> Self {
+        let Some(width) = given else {
+            let (surface, map) = (tall * SURFACE, tall * MAP);
             return Self {
-                page: 2.0 * MARGIN + SURFACE + BETWEEN + left + MAP + right,
-                surface: SURFACE,
-                map: (MAP, MAP),
+                width: 2.0 * MARGIN + surface + BETWEEN + left + map + right,
+                surface,
+                map: (map, map),
             };
         };
-        let room = page - 2.0 * MARGIN;
+        let room = width - 2.0 * MARGIN;
         let surface = 0.56 * room;
         let map = room - surface - BETWEEN - left - right;
+        let surface = tall * surface;
         Self {
-            page,
+            width,
             surface,
             map: (map, map.min(0.62 * surface)),
         }
     }
 }
 
-/// The figure.
-fn draw(joint: &Joint<'_>, print: &Print<'_>) -> Option<Page> {
-    let (look, found, (x, y)) = (&print.look, &joint.found, joint.window);
-    let [first, second, density] = &joint.titles;
-    let bars = |high: f64| {
-        let bar = |found: &JointPoint<'_>| ColourBar::new(look, found.shown.largest, high, density);
-        found.iter().map(bar).collect::<Vec<_>>()
-    };
-    let vertical = |high: f64| Scale::vertical(look, y, high, second);
-    let has_bars = look.page.is_none_or(|page| page >= NARROW);
-    let widest = |bars: &[ColourBar]| {
-        if has_bars {
-            bars.iter().map(ColourBar::width).fold(0.0, f64::max)
-        } else {
-            // Half a label of the abscissa stands out.
-            6.0
+/// The rows of a page, laid out.
+struct Rows<'a> {
+    joint: &'a Joint<'a>,
+    row: Row,
+    surface_high: f64,
+    across: Scale,
+    up: Scale,
+    /// Empty where there is no room for them.
+    bars: Vec<ColourBar>,
+    /// What stands right of the map.
+    right: f64,
+}
+
+impl<'a> Rows<'a> {
+    /// Rows that are `given` wide, or as wide as their own.
+    fn new(look: &Look, joint: &'a Joint<'_>, given: Option<f64>) -> Self {
+        let (found, (x, y)) = (&joint.found, joint.window);
+        let tall = lowered(look, found.len());
+        let [first, second, density] = &joint.titles;
+        let bars = |high: f64| {
+            let bar =
+                |found: &JointPoint<'_>| ColourBar::new(look, found.shown.largest, high, density);
+            let has_bars = given.is_none_or(|width| width >= NARROW);
+            let shown = found.iter().filter(|_| has_bars);
+            shown.map(bar).collect::<Vec<_>>()
+        };
+        // Without a bar, half a label of the abscissa stands out.
+        let right = |bars: &[ColourBar]| bars.iter().map(ColourBar::width).fold(BESIDE, f64::max);
+        let vertical = |high: f64| Scale::vertical(look, y, high, second);
+        // What stands beside the map hardly depends on its height: a first round measures it.
+        let beside = (vertical(MAP).left(), right(&bars(MAP)));
+        let high = Row::new(given, tall, beside).map.1;
+        let (up, bars) = (vertical(high), bars(high));
+        let right = right(&bars);
+        let row = Row::new(given, tall, (up.left(), right));
+        let row = Row {
+            map: (row.map.0, high),
+            ..row
+        };
+        let heights = found.iter().map(|one| {
+            let ranges = ranges(joint, one.shown.largest);
+            Space::height(look, row.surface, ranges)
+        });
+        Self {
+            joint,
+            surface_high: heights.fold(0.0, f64::max),
+            across: Scale::horizontal(look, x, row.map.0, first),
+            row,
+            up,
+            bars,
+            right,
         }
-    };
-    // What stands beside the map hardly depends on its height: a first round measures it.
-    let row = Row::new(look, vertical(MAP).left(), widest(&bars(MAP)));
-    let (up, bars) = (vertical(row.map.1), bars(row.map.1));
-    let row = Row {
-        map: (Row::new(look, up.left(), widest(&bars)).map.0, row.map.1),
-        ..row
-    };
-    let across = Scale::horizontal(look, x, row.map.0, first);
-    let mut surface_high: f64 = 0.0;
-    for one in found {
-        let ranges = ranges(joint, one.shown.largest);
-        surface_high = surface_high.max(Space::height(look, row.surface, ranges));
     }
-    let map_high = row.map.1 + Scale::below();
-    let step = ABOVE + surface_high.max(map_high);
-    let heading = Heading::new(look, print.title, row.page);
-    let height = heading.height() + found.len() as f64 * (step + MARGIN);
-    let page = Page::new(look, row.page, height);
-    heading.draw(&page);
-    for (number, (found, bar)) in found.iter().zip(&bars).enumerate() {
-        let from = heading.height() + ABOVE + number as f64 * (step + MARGIN);
-        let surface = Rectangle::new((MARGIN, from), (row.surface, surface_high));
-        write_above(&page, surface, with_letter(look, number, joint.at(found)));
-        draw_surface(&page, surface, joint, (found, COARSE));
-        let left = row.page - MARGIN - widest(&bars) - row.map.0;
-        let top = from + 0.5 * (surface_high.max(map_high) - map_high);
-        let map = Rectangle::new((left, top), row.map);
-        draw_map(&page, map, found, (x, y), found.shown.largest);
-        across.draw_below(&page, map, true);
-        up.draw_left(&page, map, true);
-        if has_bars {
-            bar.draw(&page, map, &[]);
+
+    /// From one row to the next.
+    fn step(&self) -> f64 {
+        let map = self.row.map.1 + Scale::below();
+        ABOVE + self.surface_high.max(map) + MARGIN
+    }
+
+    /// Draws one with its left upper corner at a place.
+    fn draw(&self, page: &Page, number: usize, (left, top): (f64, f64)) {
+        let (joint, look) = (self.joint, page.look());
+        let found = &joint.found[number];
+        let from = top + ABOVE;
+        let size = (self.row.surface, self.surface_high);
+        let surface = Rectangle::new((left + MARGIN, from), size);
+        let line = with_letter(look, joint.before + number, joint.at(found));
+        write_above(page, surface, line);
+        draw_surface(page, surface, joint, (found, COARSE));
+        let place = left + self.row.width - MARGIN - self.right - self.row.map.0;
+        let down = self.step() - ABOVE - MARGIN - self.row.map.1 - Scale::below();
+        let map = Rectangle::new((place, from + 0.5 * down), self.row.map);
+        draw_map(page, map, found, joint.window, found.shown.largest);
+        self.across.draw_below(page, map, true);
+        self.up.draw_left(page, map, true);
+        if let Some(bar) = self.bars.get(number) {
+            bar.draw(page, map, &[]);
         }
+    }
+}
+
+/// The figure: rows below each other, in two columns where they are higher than a page together and there is room.
+fn draw(joint: &Joint<'_>, print: &Print<'_>) -> Option<Page> {
+    let (look, count) = (&print.look, joint.found.len());
+    let usual = Look { tall: 1.0, ..*look };
+    let together = count as f64 * Rows::new(&usual, joint, look.page).step();
+    let has_room = look.page.is_some_and(|page| page >= 2.0 * COLUMN);
+    let columns = if together > look.greatest_height && has_room {
+        count.min(2)
+    } else {
+        1
+    };
+    let rows = Rows::new(look, joint, look.page.map(|page| page / columns as f64));
+    let width = rows.row.width * columns as f64;
+    let heading = Heading::new(look, print.title, width);
+    let lines = count.div_ceil(columns) as f64;
+    let page = Page::new(look, width, heading.height() + lines * rows.step());
+    heading.draw(&page);
+    for number in 0..count {
+        let (line, column) = ((number / columns) as f64, (number % columns) as f64);
+        let top = heading.height() + line * rows.step();
+        rows.draw(&page, number, (column * rows.row.width, top));
     }
     Some(page)
 }

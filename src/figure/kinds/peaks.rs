@@ -8,6 +8,7 @@ use crate::figure::canvas::style::Stroke;
 use crate::figure::figures::Print;
 use crate::figure::parts::along::{self, Curve, Track};
 use crate::figure::parts::branches::{Branch, branches};
+use crate::figure::parts::meeting::{located, meet};
 use crate::figure::parts::table::{self, number as number_of};
 use crate::figure::parts::{caption, names, view};
 
@@ -40,8 +41,11 @@ fn draw(result: &SweepResult, (number, axis): (usize, usize), print: &Print<'_>)
         (FeatureKind::Valley, "valley", 1),
     ];
     let (mut places, mut heights) = (Vec::new(), Vec::new());
-    for (kind, name, colour) in kinds {
-        for branch in branches(&result.points, number, kind, window) {
+    let mut followed = kinds.map(|(kind, ..)| branches(&result.points, number, kind, window));
+    let changes = located(result, watched);
+    meet(&mut followed, &changes, &result.points, window);
+    for ((_, name, colour), found) in kinds.into_iter().zip(followed) {
+        for branch in found {
             let curve = |places: Vec<(f64, f64)>| Curve {
                 name: name.to_owned(),
                 stroke: Stroke::curve(colour),
@@ -85,7 +89,7 @@ fn draw(result: &SweepResult, (number, axis): (usize, usize), print: &Print<'_>)
     let seen = format!(
         "Places and heights of the peaks (solid) and valleys (dashed) of the steady-state marginal density {} over {}.",
         caption::density(family, watched),
-        family.parameter()
+        caption::parameter(family)
     );
     let texts = (seen, rows(result, number));
     along::draw((result, print), Some(watched), (&tracks, HEIGHT), texts)

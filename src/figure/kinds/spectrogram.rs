@@ -10,6 +10,7 @@ use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::heat::{self, Picture};
 use crate::figure::canvas::legend::{self, Legend, Sample};
+use crate::figure::canvas::look::{DECADES, Look};
 use crate::figure::canvas::page::{Heading, Page, Rectangle, Shape};
 use crate::figure::canvas::style::{MARGIN, PNG_SCALE};
 use crate::figure::figures::{Figure, Print};
@@ -21,8 +22,6 @@ use crate::figure::parts::{caption, names, table};
 /// Size of the map on a page of its own width, in pixels, and that width.
 const MAP: (f64, f64) = (380.0, 250.0);
 const USUAL: f64 = 505.0;
-/// Powers that are less than this share of the largest have the lowest colour.
-const DECADES: f64 = 5.0;
 
 /// A figure of each power spectrum that is asked for.
 pub(super) const KIND: Kind = Kind {
@@ -39,32 +38,28 @@ pub(super) const KIND: Kind = Kind {
 };
 
 fn draw(result: &SweepResult, asked: &Asked, print: &Print<'_>) -> Drawn {
-    let (family, look, points) = (&result.subject.family, &print.look, &result.points);
+    let (family, points) = (&result.subject.family, &result.points);
+    // Power is read over decades, whatever densities have.
+    let look = &Look {
+        is_logarithmic: true,
+        ..print.look
+    };
     let (is_logarithmic, places) = frequencies(family.spectrum()?);
     let columns: Vec<Option<Vec<f64>>> = points
         .iter()
         .map(|point| {
             let known = powers(of_point(point, asked)?);
-            Some(
-                known
-                    .into_iter()
-                    .map(|(power, _)| power.abs().log10())
-                    .collect(),
-            )
+            Some(known.into_iter().map(|(power, _)| power.abs()).collect())
         })
         .collect();
-    let all = || {
-        columns
-            .iter()
-            .flatten()
-            .flatten()
-            .copied()
-            .filter(|one| one.is_finite())
-    };
-    let most = all().fold(f64::NEG_INFINITY, f64::max);
-    let least = all().fold(f64::INFINITY, f64::min).max(most - DECADES);
+    let largest = columns
+        .iter()
+        .flatten()
+        .flatten()
+        .copied()
+        .fold(0.0, f64::max);
     let (from, to) = (*places.first()?, *places.last()?);
-    if !(most > least && columns.len() > 1) {
+    if !(largest > 0.0 && largest.is_finite() && columns.len() > 1) {
         return None;
     }
     let range = parameter_range(points);
@@ -75,7 +70,7 @@ fn draw(result: &SweepResult, asked: &Asked, print: &Print<'_>) -> Drawn {
         Scale::vertical
     };
     let up = layout(look, (from, to), high, FREQUENCY);
-    let bar = ColourBar::logarithmic(look, (least, most), high, &power_title(asked));
+    let bar = ColourBar::new(look, largest, high, &power_title(asked));
     let left = MARGIN + up.left();
     let wide = look.fill(MAP.0, left + bar.width() + MARGIN);
     let across = Scale::horizontal(look, range, wide, &names::parameter(family));
@@ -109,7 +104,7 @@ fn draw(result: &SweepResult, asked: &Asked, print: &Print<'_>) -> Drawn {
         let known = columns[owners[column]].as_ref()?;
         let (below, share) = shares[row];
         let (a, b) = (known[below], *known.get(below + 1)?);
-        Some((a + share * (b - a) - least) / (most - least))
+        Some((a + share * (b - a)) / largest)
     });
     panel.draw(&[(range.0, from), (range.1, to)], Shape::Image(picture));
     labels.draw_lines(look, &panel, (from, to));
@@ -123,9 +118,8 @@ fn draw(result: &SweepResult, asked: &Asked, print: &Print<'_>) -> Drawn {
     bar.draw(&page, map, &[]);
     legend.draw(&page, map.left + 0.5 * map.width, below);
     let seen = format!(
-        "Power spectrum of {} (colours over {:.1} decades) over {}, with the frequency of its highest maximum above zero.",
+        "Power spectrum of {} (colours, logarithmic over {DECADES} decades) over {}, with the frequency of its highest maximum above zero.",
         asked.of,
-        most - least,
         family.parameter()
     );
     let marked = [spectral_rows(result, asked)];

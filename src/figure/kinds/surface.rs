@@ -18,6 +18,10 @@ const SINGLE: f64 = 470.0;
 /// The same on a sheet, and the narrowest one beside another where the page is given.
 const SMALL: f64 = 330.0;
 const NARROWEST: f64 = 250.0;
+/// The narrowest one where wider ones are higher than a page together.
+const NARROWEST_OF_MANY: f64 = 188.0;
+/// The lowest ones on a sheet, as a share of their usual size.
+const LOWEST: f64 = 0.72;
 /// The widest one, however wide the page.
 const WIDEST: f64 = 560.0;
 /// Room of the line above a surface.
@@ -71,7 +75,7 @@ pub(super) fn draw_surface(
 fn draw_single(joint: &Joint<'_>, print: &Print<'_>) -> Option<Page> {
     let (look, found) = (&print.look, &joint.found[0]);
     let width = look.page.unwrap_or(SINGLE + 2.0 * MARGIN);
-    let wide = (width - 2.0 * MARGIN).min(WIDEST);
+    let wide = (width - 2.0 * MARGIN).min(WIDEST) * look.tall.min(1.0);
     let high = Space::height(look, wide, ranges(joint, found.shown.largest));
     let heading = Heading::new(look, print.title, width);
     let page = Page::new(look, width, heading.height() + ABOVE + high + MARGIN);
@@ -87,40 +91,56 @@ fn draw_single(joint: &Joint<'_>, print: &Print<'_>) -> Option<Page> {
 /// densities.
 fn draw_sheet(joint: &Joint<'_>, print: &Print<'_>) -> Option<Page> {
     let (look, found) = (&print.look, &joint.found);
-    if found.len() < 2 {
+    if joint.count() < 2 {
         return None;
     }
-    let (columns, wide) = arrangement(look, found.len());
-    let width = look.page.unwrap_or(columns as f64 * wide + 2.0 * MARGIN);
-    let mut high: f64 = 0.0;
-    for one in found {
-        let ranges = ranges(joint, one.shown.largest);
-        high = high.max(Space::height(look, wide - MARGIN, ranges));
+    let high = |wide: f64| {
+        let heights = found.iter().map(|one| {
+            let ranges = ranges(joint, one.shown.largest);
+            Space::height(look, wide - MARGIN, ranges)
+        });
+        heights.fold(0.0, f64::max)
+    };
+    let (mut columns, mut column) = arrangement(look, (found.len(), NARROWEST));
+    let rows = |columns: usize| found.len().div_ceil(columns) as f64;
+    if rows(columns) * (ABOVE + high(column) + MARGIN) > look.greatest_height {
+        (columns, column) = arrangement(look, (found.len(), NARROWEST_OF_MANY));
     }
+    let wide = column * lowered(look, found.len());
+    let high = high(wide);
+    let width = look.page.unwrap_or(columns as f64 * column + 2.0 * MARGIN);
     let heading = Heading::new(look, print.title, width);
-    let rows = found.len().div_ceil(columns);
     let step = ABOVE + high + MARGIN;
-    let page = Page::new(look, width, heading.height() + rows as f64 * step);
+    let height = heading.height() + rows(columns) * step;
+    let page = Page::new(look, width, height);
     heading.draw(&page);
-    let margin = 0.5 * (width - columns as f64 * wide);
+    let margin = 0.5 * (width - columns as f64 * column) + 0.5 * (column - wide);
     let first = Rectangle::new((margin, heading.height() + ABOVE), (wide - MARGIN, high));
     for (number, found) in found.iter().enumerate() {
-        let rect = first.tile(number, columns, (wide, step));
+        let rect = first.tile(number, columns, (column, step));
+        let number = joint.before + number;
         write_above(&page, rect, with_letter(look, number, joint.at(found)));
         draw_surface(&page, rect, joint, (found, COARSE));
     }
     Some(page)
 }
 
-/// Columns of a sheet, and the width of each.
-fn arrangement(look: &Look, surfaces: usize) -> (usize, f64) {
+/// By how much surfaces on a page of so many are smaller than usual: several are not lower than what can be read, and
+/// move to further pages instead.
+pub(super) fn lowered(look: &Look, count: usize) -> f64 {
+    let least = if count > 1 { LOWEST } else { 0.0 };
+    look.tall.clamp(least, 1.0)
+}
+
+/// Columns of a sheet of so many surfaces, none narrower than so much where the page is given, and the width of each.
+fn arrangement(look: &Look, (surfaces, narrowest): (usize, f64)) -> (usize, f64) {
     let most = match surfaces {
         2 | 4 => 2,
         _ => 3,
     };
     let width = |columns: usize| look.fill(SMALL * columns as f64, 2.0 * MARGIN) / columns as f64;
-    let fits = |columns: usize| look.page.is_none() || width(columns) >= NARROWEST;
-    let columns = Look::columns(most, fits);
+    let fits = |columns: usize| look.page.is_none() || width(columns) >= narrowest;
+    let columns = Look::even_columns(surfaces, Look::columns(most, fits));
     (columns, width(columns).min(WIDEST))
 }
 

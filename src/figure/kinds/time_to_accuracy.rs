@@ -24,6 +24,11 @@ const BORDER: f64 = 0.25;
 const LEAST: f64 = 2.0;
 /// Shortest time and smallest error that are told apart.
 const SMALLEST: f64 = 1e-9;
+/// Errors smaller than this share of what they are of lie within the symbol.
+const SEEN: f64 = 0.06;
+/// Length of the arrow of what may be zero, and of its barbs across, in pixels.
+const ARROW: f64 = 13.0;
+const BARB: f64 = 2.6;
 
 fn exponent(value: f64) -> f64 {
     value.max(SMALLEST).log10()
@@ -60,7 +65,8 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
         Reference::Generator(_) => ("finest", "that of the generator on its finest cells"),
     };
     let ordinate = format!("total variation to {by} {density}");
-    let up = Scale::logarithmic(look, y, PANEL.1, &ordinate);
+    let high = look.tall * PANEL.1;
+    let up = Scale::logarithmic(look, y, high, &ordinate);
     let left = MARGIN + up.left();
     let wide = look.fill(PANEL.0, left + 12.0 + MARGIN);
     let across = Scale::logarithmic(look, x, wide, "seconds");
@@ -69,7 +75,10 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     let value = symbols::rounded(accuracy.value)
         .to_string()
         .replace('-', "−");
-    let title = format!("{title}{separator}at {} = {value}", family.parameter());
+    let title = format!(
+        "{title}{separator}at {} = {value}",
+        caption::parameter(family)
+    );
     let heading = Heading::new(look, &title, width);
     let shown = |method: &Method| accuracy.points.iter().any(|one| one.method == *method);
     let methods = Method::ALL.into_iter().enumerate();
@@ -81,7 +90,7 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     });
     let legend = Legend::new(look, entries.collect(), width - 2.0 * MARGIN);
     let top = heading.height() + legend.height() + 6.0;
-    let rect = Rectangle::new((left, top), (wide, PANEL.1));
+    let rect = Rectangle::new((left, top), (wide, high));
     let page = Page::new(look, width, rect.bottom() + Scale::below() + MARGIN);
     heading.draw(&page);
     legend.draw(&page, 0.5 * width, heading.height());
@@ -97,8 +106,18 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
                 let value = exponent(point.error.value + sign * error);
                 (at.0, value.clamp(y.0, y.1))
             };
+            // A bar within the symbol says nothing; where zero is within it, only its upper end does.
             let bar = Shape::Line(Stroke::solid(colour, ERROR_LINE));
-            panel.draw(&[end(-1.0), end(1.0)], bar);
+            if error >= point.error.value {
+                let (_, top) = panel.place(end(1.0));
+                let (x, y) = panel.place(at);
+                page.draw(&[(x, top), (x, y + ARROW)], bar.clone());
+                let tip = (x, y + ARROW + ERROR_LINE);
+                let barbs = [-1.0, 1.0].map(|side| (x + side * BARB, tip.1 - 1.5 * BARB));
+                page.draw(&[barbs[0], tip, barbs[1]], bar);
+            } else if error > SEEN * point.error.value {
+                panel.draw(&[end(-1.0), end(1.0)], bar);
+            }
             panel.mark(&[at], legend::symbol(number, colour));
         }
     }
@@ -106,9 +125,10 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     across.draw_below(&page, rect, true);
     up.draw_left(&page, rect, true);
     let seen = format!(
-        "Total variation of {} at {} = {} to {reference}, over the seconds that each method took; bars are two standard errors.",
+        "Total variation of {} at {} = {} to {reference}, over the seconds that each method took; bars are two standard errors, an arrow \
+         says that zero is within them.",
         caption::density(family, accuracy.observable),
-        family.parameter(),
+        caption::parameter(family),
         caption::number(accuracy.value),
     );
     let rows = accuracy.points.iter().map(|point| {

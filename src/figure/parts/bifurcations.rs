@@ -215,7 +215,13 @@ impl<'a> Labels<'a> {
     /// Writes the labels above the map, with leaders to the higher rows.
     pub(crate) fn draw_texts(&self, page: &Page, map: Rectangle) {
         let middle_of = |row: usize| map.top - GAP - (row as f64 + 0.5) * ROW;
-        for label in self.placed.iter().filter(|label| label.row > 0) {
+        // Where a lower label stands in the way nothing but dots of a leader would be seen.
+        let is_free = |label: &&Placed<'_>| {
+            let mut lower = self.placed.iter().filter(|one| one.row < label.row);
+            lower.all(|one| (one.middle - label.middle).abs() > one.half + 1.0)
+        };
+        let higher = self.placed.iter().filter(|label| label.row > 0);
+        for label in higher.filter(is_free) {
             let line = [
                 (label.middle, map.top),
                 (label.middle, middle_of(label.row) + 0.5 * ROW),

@@ -9,7 +9,7 @@ const JUMP: f64 = 0.06;
 /// its range is still smooth. Between distant points it may thus go farther than [`JUMP`].
 const SLOPE: f64 = 1.8;
 /// Largest step between however distant points, as a share of the window.
-const FARTHEST: f64 = 0.25;
+pub(super) const FARTHEST: f64 = 0.25;
 /// The next candidate must be this many times as far away for a link to be beyond doubt.
 const CLEAR: f64 = 2.0;
 /// A step that no eye sees, as a share of the window.
@@ -110,7 +110,7 @@ pub(crate) fn branches(
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::continuation::SolveReport;
     use crate::topology::FeatureErrors;
@@ -134,7 +134,7 @@ mod tests {
     }
 
     /// A point with peaks at the given places; without a density for `None`.
-    fn point(value: f64, peaks: Option<&[f64]>) -> Point {
+    pub(in crate::figure::parts) fn point(value: f64, peaks: Option<&[f64]>) -> Point {
         let feature = |&at: &f64| Feature {
             kind: FeatureKind::Peak,
             position: vec![at],

@@ -2,7 +2,9 @@
 
 use crate::continuation::{BifurcationStatus, Label, Located, SweepResult};
 use crate::density::Observable;
+use crate::figure::canvas::look::{DECADES, Look};
 use crate::figure::canvas::symbols;
+use crate::figure::parts::names;
 use crate::space::Axis;
 use crate::system::Family;
 use crate::topology::Between;
@@ -18,6 +20,26 @@ pub(crate) fn of_sweep(result: &SweepResult, seen: String, marked: &[String]) ->
     format!("{} {}\n", parts.join(" "), version())
 }
 
+/// At which shares of a maximum contours are drawn.
+pub(crate) fn contours(look: &Look) -> &'static str {
+    if look.is_logarithmic {
+        "0.1, 1, 10 and 50 %"
+    } else {
+        "10, 30, 50, 70 and 90 %"
+    }
+}
+
+/// What is said of logarithmic colours, after another sentence; nothing of linear ones.
+pub(crate) fn floor(look: &Look) -> String {
+    if look.is_logarithmic {
+        format!(
+            " Colours are logarithmic; what is below 10^-{DECADES} of the largest density has the colour of the floor."
+        )
+    } else {
+        String::new()
+    }
+}
+
 /// What computed it.
 pub(crate) fn version() -> String {
     format!("Computed with pbif {}.", env!("CARGO_PKG_VERSION"))
@@ -25,7 +47,8 @@ pub(crate) fn version() -> String {
 
 /// `p(x, y)`.
 pub(crate) fn density(family: &Family, observable: Observable) -> String {
-    format!("p({})", observable.symbols(family).join(", "))
+    let symbols = observable.symbols(family).into_iter().map(in_letters);
+    format!("p({})", symbols.collect::<Vec<_>>().join(", "))
 }
 
 /// A number as captions have it.
@@ -46,7 +69,18 @@ pub(crate) fn at(family: &Family, values: impl Iterator<Item = f64>) -> String {
         [rest @ .., last] if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
         all => all.join(", "),
     };
-    format!(" at {} = {values}", family.parameter())
+    format!(" at {} = {values}", parameter(family))
+}
+
+/// The swept parameter as figures have it, in plain letters: `f_c`, `σ²`.
+pub(crate) fn parameter(family: &Family) -> String {
+    in_letters(family.symbol())
+}
+
+/// A symbol without its markup.
+fn in_letters(symbol: &str) -> String {
+    let raised = symbol.replace("^{2}", "²").replace("^{3}", "³");
+    raised.replace(['{', '}', '$'], "")
 }
 
 /// A value to the second digit of its error.
@@ -69,7 +103,10 @@ pub(crate) fn system_of(family: &Family) -> String {
     let equations = model.equations.join("; ");
     let fixed: Vec<String> = family
         .fixed()
-        .map(|(name, value)| format!("{name} = {}", number(value)))
+        .map(|(name, value)| {
+            let symbol = in_letters(&names::symbol_of(family, name));
+            format!("{symbol} = {}", number(value))
+        })
         .collect();
     let fixed = if fixed.is_empty() {
         String::new()
@@ -107,7 +144,7 @@ fn method(result: &SweepResult) -> String {
         format!(
             "{} of {} in [{from}, {to}]",
             axis.count(),
-            family.axis(*number)
+            in_letters(family.axis_symbol(*number))
         )
     });
     let cells: Vec<String> = cells.collect();
@@ -138,7 +175,7 @@ pub(crate) fn bifurcations(result: &SweepResult) -> String {
             BifurcationStatus::Located => String::new(),
             status => format!(", {}", status.word()),
         };
-        let observable = row.observable.name(family);
+        let observable = density(family, row.observable);
         let error = format!("{:.1e}", row.error);
         format!(
             "{} at {} ± {error} ({observable}{status})",

@@ -1,5 +1,7 @@
 //! Joint densities of two axes as heat maps with contours, and what stands around such maps.
 
+use std::ops::Range;
+
 use plotters_backend::text_anchor::HPos;
 
 use super::names;
@@ -17,8 +19,11 @@ use crate::figure::canvas::style::{MARGIN, Stroke, TEXT};
 use crate::figure::figures::Print;
 use crate::topology::{Feature, FeatureKind, Verdict};
 
-/// Contours are drawn at these shares of the largest density.
-pub(crate) const LEVELS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+/// Contours are drawn at these shares of the largest density, and at those where colours are logarithmic.
+const LEVELS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+const LEVELS_BY_DECADES: [f64; 4] = [1e-3, 1e-2, 0.1, 0.5];
+/// What lies in the window of joint densities, at least, of each marginal's mass at either end.
+const OUTSIDE: f64 = 2e-4;
 /// Contours are followed on squares of so many pixels, and lose points that lie so near to their neighbours' chord.
 const CONTOUR: f64 = 1.5;
 const ALIKE: f64 = 0.05;
@@ -30,8 +35,15 @@ pub(crate) struct Joint<'a> {
     pub(crate) number: usize,
     /// The points, with and without a density.
     pub(crate) points: &'a [&'a Point],
+    /// Those of the points that are shown.
+    pub(crate) shown: Range<usize>,
     /// The densities that there are.
     pub(crate) found: Vec<JointPoint<'a>>,
+    /// Densities of all pages, and the number of those on pages before this one.
+    count: usize,
+    pub(crate) before: usize,
+    /// The least and the greatest of the largest values of all pages.
+    pub(crate) summits: (f64, f64),
     /// The windows of both axes, which all share.
     pub(crate) window: ((f64, f64), (f64, f64)),
     /// Titles of both axes, and of the density.
@@ -54,14 +66,47 @@ impl<'a> Joint<'a> {
         let found: Vec<JointPoint<'_>> = found.collect();
         let axes = [first, second].map(|axis| names::axis(family, axis));
         let [first, second] = axes;
+        let summits = found.iter().map(|found| found.shown.largest);
+        let summits = summits.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), one| {
+            (low.min(one), high.max(one))
+        });
         Some(Self {
             result,
             number,
             points,
+            shown: 0..points.len(),
             window: windows(&found)?,
+            count: found.len(),
+            before: 0,
+            summits,
             found,
             titles: [first, second, names::density(family, watched)],
         })
+    }
+
+    /// Densities of all pages.
+    pub(crate) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// What stands on one page of several; windows and colours stay those of all.
+    pub(crate) fn on_page(mut self, print: &Print<'_>) -> Self {
+        if print.part.1 == 1 {
+            return self;
+        }
+        let share = print.share(self.count);
+        let place = |found: &JointPoint<'_>| {
+            let mut points = self.points.iter();
+            points.position(|point| point.value == found.value)
+        };
+        let places = self.found[share.clone()].iter().filter_map(place);
+        let (from, to) = places.fold((usize::MAX, 0), |(from, to), place| {
+            (from.min(place), to.max(place + 1))
+        });
+        self.shown = from.min(to)..to;
+        self.before = share.start;
+        self.found = self.found.drain(share).collect();
+        self
     }
 
     /// The value of the parameter that a density is of, as it stands above its map.
@@ -105,10 +150,24 @@ impl<'a> JointPoint<'a> {
     }
 }
 
-/// The windows of both axes.
+/// The shares of the largest density at which contours are drawn.
+pub(crate) fn levels(look: &Look) -> &'static [f64] {
+    if look.is_logarithmic {
+        &LEVELS_BY_DECADES
+    } else {
+        &LEVELS
+    }
+}
+
+/// The windows of both axes: no density of note is outside of them, and nearly all mass is inside.
 pub(crate) fn windows(found: &[JointPoint<'_>]) -> Option<((f64, f64), (f64, f64))> {
     let densities: Vec<&Density> = found.iter().map(JointPoint::density).collect();
-    Some((view::window(&densities, 0)?, view::window(&densities, 1)?))
+    let window = |axis: usize| {
+        let noted = view::window(&densities, axis)?;
+        let held = view::holding(&densities, axis, OUTSIDE).unwrap_or(noted);
+        Some((noted.0.max(held.0), noted.1.min(held.1)))
+    };
+    Some((window(0)?, window(1)?))
 }
 
 /// Opens a page with heading and legend, and room for maps of the given size that begins `left`
@@ -138,7 +197,7 @@ pub(crate) fn with_letter(look: &Look, number: usize, line: String) -> String {
     let letter = char::from(b'a' + (number % 26) as u8);
     if look.has_letters {
         // Browsers make one of two plain spaces.
-        format!("({letter})\u{a0} {line}")
+        format!("({letter})\u{a0} {line}").trim_end().to_owned()
     } else {
         line
     }
@@ -224,7 +283,7 @@ fn draw_contours(
     };
     let own = found.shown.largest;
     let place = |&point: &(f64, f64)| panel.place(point);
-    for share in LEVELS {
+    for &share in levels(look) {
         let colour = on_heat(look, share * own / largest);
         for line in grid.contour(share * own) {
             let line = simplify(&line, ALIKE, place);

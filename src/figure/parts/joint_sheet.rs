@@ -1,15 +1,17 @@
 //! Joint densities on one sheet: as many columns as there is room for, the same windows, one colour bar.
 
+use plotters_backend::text_anchor::HPos;
+
 use crate::figure::figures::Print;
 
-use super::joint_map::{Joint, JointPoint, LEVELS, draw_map, open_page, with_letter, write_above};
+use super::joint_map::{Joint, JointPoint, draw_map, levels, open_page, with_letter, write_above};
 use super::names;
 use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::frame::Scale;
 use crate::figure::canvas::letters;
-use crate::figure::canvas::look::Look;
-use crate::figure::canvas::page::{Page, Rectangle};
-use crate::figure::canvas::style::{MARGIN, TEXT};
+use crate::figure::canvas::look::{Look, on_heat};
+use crate::figure::canvas::page::{Page, Rectangle, Shape, small};
+use crate::figure::canvas::style::{Colour, MARGIN, TEXT, TICK_TEXT};
 use crate::figure::canvas::symbols;
 
 /// Side of a map on a sheet.
@@ -26,6 +28,8 @@ const TALLEST_SMALL: f64 = 230.0;
 const MOST_IN_A_TOWER: usize = 3;
 /// Digits of values where there is little room.
 const FEW: usize = 2;
+/// Digits of the largest density in a map.
+const DIGITS: usize = 3;
 
 /// How the maps of a sheet are arranged and coloured.
 struct Sheet {
@@ -43,12 +47,8 @@ struct Sheet {
 impl Sheet {
     /// Arranges maps in as many columns as there is room for between what stands left and right of them all, `beside`
     /// pixels; on a given page none is narrower than `least`. Columns are `between` pixels apart.
-    fn new(
-        look: &Look,
-        found: &[JointPoint<'_>],
-        (beside, between): (f64, f64),
-        least: f64,
-    ) -> Self {
+    fn new(look: &Look, joint: &Joint<'_>, (beside, between): (f64, f64), least: f64) -> Self {
+        let found = &joint.found;
         let own_columns = match found.len() {
             2 | 4 => 2,
             10.. => 4,
@@ -69,12 +69,13 @@ impl Sheet {
                 width(columns) >= least.max(SMALLEST)
             }),
         };
-        let side = (width(columns), width(columns).min(TALLEST_SMALL));
+        let columns = Look::even_columns(found.len(), columns);
+        let high = look.tall * width(columns).min(TALLEST_SMALL);
+        let side = (width(columns), high);
         let rows = found.len().div_ceil(columns);
         let step = (side.0 + between, side.1 + BETWEEN + 1.4 * TEXT);
-        let own = found.iter().map(|found| found.shown.largest);
-        let largest = own.clone().fold(0.0, f64::max);
-        let comparable = own.into_iter().all(|own| own * COMPARABLE >= largest);
+        let (least, largest) = joint.summits;
+        let comparable = least * COMPARABLE >= largest;
         Self {
             columns,
             side,
@@ -116,7 +117,10 @@ fn with_lines(
     let at = |found: &JointPoint<'_>| joint.at(found);
     let short = |found: &JointPoint<'_>| names::at(family, symbols::rounded_to(found.value, FEW));
     let numbered = found.iter().enumerate();
-    let lettered = numbered.map(|(number, found)| with_letter(look, number, at(found)));
+    let lettered = numbered.map(|(number, found)| {
+        let number = joint.before + number;
+        with_letter(look, number, at(found))
+    });
     let lines: Vec<String> = lettered.collect();
     let sheet = arranged(widest(look, &lines));
     if sheet.columns > 1 || found.len() <= MOST_IN_A_TOWER {
@@ -136,10 +140,28 @@ fn with_lines(
     (sheet, lines)
 }
 
+/// Writes the largest density into the lower right corner of a map whose colours it scales, on the colour of no
+/// density: logarithmic colours may be dark there.
+fn write_maximum(page: &Page, map: Rectangle, found: &JointPoint<'_>) {
+    let look = page.look();
+    let largest = symbols::rounded_to(found.shown.largest, DIGITS);
+    let text = format!("max {}", symbols::value(largest));
+    let wide = letters::text_width(look, &text, TICK_TEXT, false) + 6.0;
+    let corner = (
+        map.right() - wide - 1.0,
+        map.bottom() - 1.3 * TICK_TEXT - 1.0,
+    );
+    let ground = Rectangle::new(corner, (wide, 1.3 * TICK_TEXT));
+    let empty = Colour::fixed(look.colours.colour(0.0)).at(0.8);
+    page.draw(&ground.corners(), Shape::Area(empty));
+    let place = (ground.right() - 3.0, ground.top + 0.5 * ground.height);
+    page.text(place, small(text, HPos::Right, on_heat(look, 0.0)));
+}
+
 /// All maps of a pair on one sheet, with the same windows; `None` for fewer than two densities.
 pub(crate) fn draw(joint: &Joint<'_>, print: &Print<'_>) -> Option<Page> {
     let (look, found, (x, y)) = (&print.look, &joint.found, joint.window);
-    if found.len() < 2 {
+    if joint.count() < 2 {
         return None;
     }
     let [first, second, density] = &joint.titles;
@@ -147,13 +169,13 @@ pub(crate) fn draw(joint: &Joint<'_>, print: &Print<'_>) -> Option<Page> {
     let horizontal = |long: f64| Scale::horizontal(look, x, long, first);
     let arranged = |least: f64| -> Sheet {
         // The bar and the labels of the ordinate hardly depend on how high the maps are: a first sheet measures them.
-        let rough = Sheet::new(look, found, (140.0, BETWEEN), least);
+        let rough = Sheet::new(look, joint, (140.0, BETWEEN), least);
         let bar_width = rough.bar(look, density).width();
         let left = MARGIN + vertical(rough.side.1).left();
         let beyond = horizontal(rough.side.0).beyond(rough.side.0);
         let between = BETWEEN.max(beyond + BETWEEN_LABELS);
         let beside = left + bar_width + MARGIN;
-        Sheet::new(look, found, (beside, between), least)
+        Sheet::new(look, joint, (beside, between), least)
     };
     let (sheet, lines) = with_lines((look, joint), &arranged);
     let bar = sheet.bar(look, density);
@@ -168,11 +190,18 @@ pub(crate) fn draw(joint: &Joint<'_>, print: &Print<'_>) -> Option<Page> {
         write_above(&page, map, line);
         let top = sheet.common.unwrap_or(found.shown.largest);
         draw_map(&page, map, found, (x, y), top);
+        if sheet.common.is_none() {
+            write_maximum(&page, map, found);
+        }
         // A map with none below it carries the labels of its column.
         across.draw_below(&page, map, number + sheet.columns >= joint.found.len());
         up.draw_left(&page, map, number % sheet.columns == 0);
     }
-    let marks: &[f64] = if sheet.common.is_some() { &[] } else { &LEVELS };
+    let marks: &[f64] = if sheet.common.is_some() {
+        &[]
+    } else {
+        levels(look)
+    };
     bar.draw(&page, all, marks);
     Some(page)
 }

@@ -211,6 +211,45 @@ pub(crate) fn window(densities: &[&Density], axis: usize) -> Option<(f64, f64)> 
     Some((from.unwrap_or(whole.0), to.unwrap_or(whole.1)))
 }
 
+/// The part of axis number `axis` outside of which each density has at most a share of its mass at either end, with a
+/// border; it ends at edges of cells. `None` without mass.
+pub(crate) fn holding(densities: &[&Density], axis: usize, share: f64) -> Option<(f64, f64)> {
+    let mut held: Option<(f64, f64)> = None;
+    for density in densities {
+        let cells = density.axes.get(axis)?;
+        let mut masses = vec![0.0; cells.count()];
+        let fastest: usize = density.axes[axis + 1..].iter().map(Axis::count).product();
+        for (number, mass) in density.masses().into_iter().enumerate() {
+            if mass.is_finite() {
+                masses[number / fastest % cells.count()] += mass.max(0.0);
+            }
+        }
+        let all: f64 = masses.iter().sum();
+        if all <= 0.0 {
+            continue;
+        }
+        let end = |masses: &mut dyn Iterator<Item = (usize, &f64)>| {
+            let mut outside = 0.0;
+            let mut inside = masses.skip_while(|(_, mass)| {
+                outside += **mass;
+                outside <= share * all
+            });
+            inside.next().map(|(cell, _)| cell)
+        };
+        let first = end(&mut masses.iter().enumerate())?;
+        let last = end(&mut masses.iter().enumerate().rev())?;
+        let (from, to) = (cells.edges()[first], cells.edges()[last + 1]);
+        held = Some(held.map_or((from, to), |(a, b)| (from.min(a), to.max(b))));
+    }
+    let (from, to) = held?;
+    let border = BORDER * (to - from);
+    let edges = densities.first()?.axes.get(axis)?.edges();
+    let below = edges.iter().rfind(|&&edge| edge <= from - border);
+    let above = edges.iter().find(|&&edge| edge >= to + border);
+    let whole = (edges.first()?, edges.last()?);
+    Some((*below.unwrap_or(whole.0), *above.unwrap_or(whole.1)))
+}
+
 /// Pixels for a window of axes: one a cell where all are alike and uniform, else as many as a PNG shows.
 pub(crate) fn cell_resolution(axes: &[&Axis], window: (f64, f64), length: f64) -> usize {
     let most = (length * PNG_SCALE).round().clamp(1.0, MOST_PIXELS) as usize;

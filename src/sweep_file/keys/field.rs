@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::super::draft::{Auto, Draft, ExponentKind, MethodKind, Modes};
 use super::super::value::Plain;
-use crate::figure::{ColourMap, FigureWidth, Format, Ground, Typeface};
+use crate::figure::{ColourMap, ColourScale, FigureWidth, Format, Ground, Typeface};
 use crate::generator::AdvectiveScheme;
 use crate::method::{Correction, DerivedMeasure, Estimator, StepChoice};
 use crate::sampling::Integrator;
@@ -272,6 +272,7 @@ macro_rules! named {
 named!(
     AdvectiveScheme,
     ColourMap,
+    ColourScale,
     Correction,
     DerivedMeasure,
     Estimator,

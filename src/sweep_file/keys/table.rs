@@ -10,7 +10,7 @@ use super::kind::{
 use super::{Key, KeyDefault};
 use crate::continuation::curve::CurveOptions;
 use crate::continuation::map::MapOptions;
-use crate::figure::{ColourMap, Format, Ground, Typeface};
+use crate::figure::{ColourMap, ColourScale, Format, Ground, Typeface};
 use crate::generator::AdvectiveScheme;
 use crate::method::{Correction, DerivedMeasure, Estimator};
 use crate::sampling::Integrator;
@@ -272,7 +272,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("figures.at", Kind::List(&Kind::Number(ANY)), Rule("both ends of the sweep and two points between"), optional!(figures_at),
         "Parameter values at which joint densities and marginals are drawn, inside the sweep."),
     key("figures.formats", Kind::List(&Kind::Choice(Format::words)), OfOptions, always!(figures.formats),
-        "File formats of the figures; `csv` writes the numbers behind each, `txt` its caption."),
+        "File formats of the figures; `csv` writes the numbers behind each, `txt` its caption, `tex` the same for LaTeX."),
     key("figures.draw", Kind::List(&Kind::Text), OfOptions, optional!(figures.draw),
         "Figures that are drawn: kinds, such as `diagram`, or single ones, such as `diagram_x`; `all` for every one."),
     key("figures.style.width", Kind::Width, OfOptions, always!(figures.style.width),
@@ -287,6 +287,8 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "Typeface: DejaVu Sans or DejaVu Serif."),
     key("figures.style.colours", Kind::Choice(ColourMap::words), OfOptions, always!(figures.style.colours),
         "Colours of maps and surfaces: perceptually uniform, and safe for colour-blind readers; `grey` runs from white to black."),
+    key("figures.style.scale", Kind::Choice(ColourScale::words), OfOptions, always!(figures.style.scale),
+        "Whether colours of heat maps follow the density in proportion or by decades, four of them below the largest density."),
     key("figures.style.ground", Kind::Choice(Ground::words), OfOptions, always!(figures.style.ground),
         "Light for print, dark for screens."),
     key("figures.style.title", Kind::Choice(switch), OfOptions, always!(figures.style.title),

@@ -223,6 +223,12 @@ impl TypedModel {
     ) -> Self {
         self.parameters
             .extend(parameters.into_iter().map(Into::into));
+        // Beside a first one it is the second of several.
+        if self.parameters.iter().any(|one| one.symbol == "σ₁") {
+            let intensity = |one: &&mut ParameterDescription| one.symbol == INTENSITY;
+            let renamed = self.parameters.iter_mut().filter(intensity);
+            renamed.for_each(|one| one.symbol = "σ₂".to_owned());
+        }
         self
     }
 
@@ -344,8 +350,14 @@ impl TypedModel {
     }
 }
 
+/// The symbol of `sigma2`: an intensity of noise, as in the built-in models.
+const INTENSITY: &str = "σ^{2}";
+
 /// The symbol of a name in figures: Greek letters, and what follows `_` as a subscript.
 fn symbol(name: &str) -> String {
+    if typeset_name(name) == "σ₂" {
+        return INTENSITY.to_owned();
+    }
     match typeset_name(name).split_once('_') {
         Some((letter, subscript)) => format!("{letter}_{{{subscript}}}"),
         None => typeset_name(name),

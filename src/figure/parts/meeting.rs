@@ -1,0 +1,227 @@
+//! Branches of peaks and valleys led on to the located changes at which they meet.
+
+use super::branches::{Branch, FARTHEST};
+use crate::continuation::{BifurcationStatus, Point, SweepResult};
+use crate::density::Observable;
+use crate::topology::FeatureKind;
+
+/// Points by which a branch is drawn to where it meets another.
+const STEPS: usize = 12;
+/// Values nearer to a change than this share of the longest step were added to narrow it.
+const NEAR: f64 = 0.35;
+/// Powers of the distance to a change with which places may go to where they meet: a root at a smooth change, about a
+/// straight line at a kink.
+const POWERS: (f64, f64) = (0.35, 1.1);
+const ROOT: f64 = 0.5;
+
+/// The values at which the shape of an observable was located to change.
+pub(crate) fn located(result: &SweepResult, observable: Observable) -> Vec<f64> {
+    let rows = result.bifurcations();
+    let own = rows
+        .filter(|row| row.observable == observable && row.status() == BifurcationStatus::Located);
+    own.map(|row| row.value).collect()
+}
+
+/// The end of a branch beside a change.
+#[derive(Debug, Clone, Copy)]
+struct End {
+    /// Which of the lists of branches, and its number there.
+    branch: (usize, usize),
+    kind: FeatureKind,
+    /// Parameter and coordinate.
+    place: (f64, f64),
+    /// The place before it, going away from the change.
+    before: Option<(f64, f64)>,
+    is_below: bool,
+}
+
+impl End {
+    /// The way from it to where it meets others: as a power of the distance to the change, which its last two places
+    /// tell.
+    fn way(&self, meeting: (f64, f64)) -> Vec<(f64, f64)> {
+        let off = self.place.1 - meeting.1;
+        let power = self.before.and_then(|before| {
+            let times = (before.1 - meeting.1) / off;
+            let longer = (before.0 - meeting.0) / (self.place.0 - meeting.0);
+            (times > 1.0 && longer > 1.0).then(|| times.ln() / longer.ln())
+        });
+        let power = power.unwrap_or(ROOT).clamp(POWERS.0, POWERS.1);
+        let step = |number: usize| {
+            let share = number as f64 / STEPS as f64;
+            let value = self.place.0 + share * (meeting.0 - self.place.0);
+            (value, meeting.1 + off * (1.0 - share).powf(power))
+        };
+        (1..=STEPS).map(step).collect()
+    }
+}
+
+/// What lies about a change: its value, and how far from it the ends of branches are looked for.
+#[derive(Debug, Clone, Copy)]
+struct Around {
+    change: f64,
+    gap: f64,
+}
+
+impl Around {
+    /// Whether a value is one of those that were added to narrow the change.
+    fn is_near(&self, value: f64) -> bool {
+        (value - self.change).abs() <= NEAR * self.gap
+    }
+
+    /// Whether a branch holds nothing but such values: pieces that no link has joined.
+    fn is_piece(&self, branch: &Branch) -> bool {
+        branch.places.iter().all(|place| self.is_near(place.0))
+    }
+
+    /// Whether a branch lies on one side, but for such values.
+    fn is_on_side(&self, branch: &Branch, is_below: bool) -> bool {
+        let is_here = |value: f64| (value < self.change) == is_below || self.is_near(value);
+        branch.places.iter().all(|place| is_here(place.0))
+    }
+
+    /// The places of a branch on one side, the nearest one first.
+    fn on_side(&self, branch: &Branch, is_below: bool) -> Vec<(f64, f64)> {
+        let places = branch.places.iter().copied();
+        let mut own: Vec<(f64, f64)> = places
+            .filter(|place| place.0 != self.change && (place.0 < self.change) == is_below)
+            .collect();
+        if is_below {
+            own.reverse();
+        }
+        own
+    }
+
+    /// The ends of branches on one side, in the order of their coordinates.
+    fn ends(&self, branches: &[Vec<Branch>; 2], is_below: bool) -> Vec<End> {
+        let mut ends = Vec::new();
+        for (list, found) in branches.iter().enumerate() {
+            for (number, branch) in found.iter().enumerate() {
+                if self.is_piece(branch) || !self.is_on_side(branch, is_below) {
+                    continue;
+                }
+                let places = self.on_side(branch, is_below);
+                let Some(&place) = places.first() else {
+                    continue;
+                };
+                if (place.0 - self.change).abs() <= self.gap {
+                    ends.push(End {
+                        branch: (list, number),
+                        kind: branch.kind,
+                        place,
+                        before: places.get(1).copied(),
+                        is_below,
+                    });
+                }
+            }
+        }
+        ends.sort_by(|a, b| a.place.1.total_cmp(&b.place.1));
+        ends
+    }
+}
+
+/// Where the ends on one side of a change meet, with those that do: two of one kind meet the other kind between them,
+/// neighbours of different kinds meet half-way. Empty where it is not clear.
+fn meetings(ends: &[End]) -> Vec<(f64, Vec<End>)> {
+    let alternate = ends.windows(2).all(|pair| pair[0].kind != pair[1].kind);
+    match ends.len() {
+        3 if alternate => vec![(ends[1].place.1, ends.to_vec())],
+        2 | 4 if alternate || ends.len() == 4 => {
+            let pairs = ends.chunks(2).filter(|pair| pair[0].kind != pair[1].kind);
+            let middle = |pair: &[End]| 0.5 * (pair[0].place.1 + pair[1].place.1);
+            pairs.map(|pair| (middle(pair), pair.to_vec())).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Leads the branches of peaks and of valleys that end beside located changes on to where these are. Between computed
+/// values, and where features are too near to each other to be told apart, a diagram would end them short of the change
+/// that it marks.
+pub(crate) fn meet(
+    branches: &mut [Vec<Branch>; 2],
+    changes: &[f64],
+    points: &[Point],
+    window: (f64, f64),
+) {
+    let farthest = FARTHEST * (window.1 - window.0);
+    let steps = points.windows(2).map(|pair| pair[1].value - pair[0].value);
+    let gap = 1.01 * steps.fold(0.0, f64::max);
+    for &change in changes {
+        let around = Around { change, gap };
+        let [lower, upper] = [true, false].map(|is_below| around.ends(branches, is_below));
+        let (many, few) = if lower.len() > upper.len() {
+            (lower, upper)
+        } else {
+            (upper, lower)
+        };
+        let mut met = Vec::new();
+        for (place, mut group) in meetings(&many) {
+            let near = |end: &&End| (end.place.1 - place).abs() <= farthest;
+            if !group.iter().all(|end| near(&end)) {
+                continue;
+            }
+            // Three become one of the kind of the outer two.
+            if group.len() == 3 && few.len() == 1 {
+                group.extend(few.iter().filter(near).copied());
+            }
+            for end in group {
+                let branch = &mut branches[end.branch.0][end.branch.1];
+                let mut places = around.on_side(branch, end.is_below);
+                places.extend(end.way((change, place)));
+                places.sort_by(|a, b| a.0.total_cmp(&b.0));
+                branch.places = places;
+            }
+            met.push(place);
+        }
+        // The places of pieces are on the ways now.
+        let is_on_way = |branch: &Branch| {
+            let is_near = |one: &(f64, f64)| met.iter().any(|at| (one.1 - at).abs() <= farthest);
+            around.is_piece(branch) && branch.places.iter().all(is_near)
+        };
+        for list in branches.iter_mut() {
+            list.retain(|branch| !is_on_way(branch));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::parts::branches::{branches, tests::point};
+
+    #[test]
+    fn branches_meet_where_the_change_is() {
+        // Peaks at ± √(-value/4) below zero and at zero above, at values ± 0.1, ± 0.3, …; a valley between the two.
+        let values: Vec<f64> = (-5..5).map(|i| 0.1 + 0.2 * f64::from(i)).collect();
+        let peak = |value: f64| (-0.25 * value).max(0.0).sqrt();
+        let of = |value: &f64| match *value < 0.0 {
+            true => point(*value, Some(&[-peak(*value), peak(*value)])),
+            false => point(*value, Some(&[0.0])),
+        };
+        let points: Vec<Point> = values.iter().map(of).collect();
+        let window = (-1.0, 1.0);
+        let valley = Branch {
+            kind: FeatureKind::Valley,
+            places: values[..5].iter().map(|value| (*value, 0.0)).collect(),
+        };
+        let peaks = branches(&points, 0, FeatureKind::Peak, window);
+        let mut all = [peaks, vec![valley]];
+        meet(&mut all, &[0.0], &points, window);
+        assert_eq!(all[0].len(), 3);
+        for branch in all.iter().flatten() {
+            let met = branch
+                .places
+                .iter()
+                .any(|place| place.0.abs() < 1e-12 && place.1 == 0.0);
+            assert!(met, "{branch:?}");
+            assert!(branch.places.is_sorted_by(|a, b| a.0 < b.0), "{branch:?}");
+            for place in branch
+                .places
+                .iter()
+                .filter(|place| branch.kind == FeatureKind::Peak && place.0 < 0.0)
+            {
+                assert!((place.1.abs() - peak(place.0)).abs() < 1e-9, "{place:?}");
+            }
+        }
+    }
+}
