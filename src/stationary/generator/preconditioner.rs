@@ -6,7 +6,8 @@ use sprs::CsMat;
 
 use super::RateError;
 use super::dissection::Grid;
-use super::modewise::{Layout, ModeFactors, others};
+use super::harmonics::HarmonicFactors;
+use super::modewise::{Layout, ModeFactors, has_phase, others};
 use super::narrowing::narrow;
 use super::prediction::{Prediction, predict};
 use crate::cancellation::Cancellation;
@@ -55,7 +56,8 @@ pub enum RateMethod {
     NarrowLu,
     /// The same in single precision.
     NarrowLuSingle,
-    /// LU of every Legendre mode by itself, in single precision, lower modes first: for many modes.
+    /// LU of every Legendre mode by itself, in single precision, lower modes first: for many modes. Of a phase, LU of
+    /// every harmonic by itself.
     Modewise,
 }
 
@@ -251,6 +253,7 @@ pub(super) struct Preconditioner {
 enum Kept {
     Whole(WholeFactors),
     Modes(Box<ModeFactors>),
+    Harmonics(Box<HarmonicFactors>),
 }
 
 impl Preconditioner {
@@ -276,6 +279,13 @@ impl Preconditioner {
             && let Some(grid) = grid_of_places(space, structure)
             && let Some(layout) = Layout::new(space, grid)
         {
+            if has_phase(space) {
+                let factors = HarmonicFactors::new(layout, matrix, held, cancellation)?;
+                return Ok(Self {
+                    held: factors.held,
+                    factors: Kept::Harmonics(Box::new(factors)),
+                });
+            }
             let factors = ModeFactors::new(layout, matrix, held, cancellation)?;
             return Ok(Self {
                 held: factors.held,
@@ -284,7 +294,7 @@ impl Preconditioner {
         }
         let old = old.and_then(|old| match old.factors {
             Kept::Whole(factors) => Some(factors),
-            Kept::Modes(_) => None,
+            Kept::Modes(_) | Kept::Harmonics(_) => None,
         });
         let grid = || grid(space, structure, method);
         let narrowed = method.is_narrow().then(|| narrow(space, matrix));
@@ -301,6 +311,7 @@ impl Preconditioner {
         match &self.factors {
             Kept::Whole(factors) => factors.apply(residuals, self.held),
             Kept::Modes(factors) => factors.apply(residuals),
+            Kept::Harmonics(factors) => factors.apply(residuals),
         }
     }
 
@@ -315,6 +326,7 @@ impl Preconditioner {
         match &self.factors {
             Kept::Whole(factors) => factors.apply_transposed(residual, self.held),
             Kept::Modes(factors) => factors.apply_transposed(residual),
+            Kept::Harmonics(factors) => factors.apply_transposed(residual),
         }
     }
 
@@ -323,6 +335,7 @@ impl Preconditioner {
         match &self.factors {
             Kept::Whole(factors) => factors.bytes(),
             Kept::Modes(factors) => factors.bytes(),
+            Kept::Harmonics(factors) => factors.bytes(),
         }
     }
 }
