@@ -21,7 +21,7 @@ use rayon::prelude::*;
 use sprs::CsMat;
 
 use super::dissection::Dissection;
-use super::fronts::{Factors, allocate, factorise};
+use super::fronts::{Factor, allocate, factorise};
 use super::modewise::Layout;
 use super::number::{Number, Wide};
 use super::symbolic::Symbolic;
@@ -45,15 +45,21 @@ pub(super) struct HarmonicFactors {
     symbolic: Symbolic,
     blocks: Blocks,
     /// Of the averaged generator, with the held place held, over its scale.
-    mean: (Factors<f32>, f64),
+    mean: Scaled<f32>,
     /// Of the averaged generator minus ikω, k = 1, 2, …
-    waves: Vec<(Factors<c32>, f64)>,
+    waves: Vec<Scaled<c32>>,
     /// Steady state of the averaged generator, one at the held place.
     null: Vec<f64>,
     /// Position of the held place in the order of elimination.
     position: usize,
     /// The cell held.
     pub(super) held: usize,
+}
+
+/// Factors of a matrix over `scale`.
+struct Scaled<T> {
+    fronts: Vec<Factor<T>>,
+    scale: f64,
 }
 
 /// A right side, or what solves it: the mean over a period at each place, and harmonics.
@@ -81,7 +87,7 @@ impl HarmonicFactors {
             let rates = blocks.of_wave(number);
             factors(&symbolic, rates, None, cancellation)
         });
-        let waves: Result<Vec<(Factors<c32>, f64)>, Cancelled> = waves.collect();
+        let waves: Result<Vec<Scaled<c32>>, Cancelled> = waves.collect();
         let (waves, mut held) = (waves?, held);
         for tried in 1..=TRIED {
             let place = layout.split(held).0;
@@ -162,7 +168,9 @@ impl HarmonicFactors {
         let of_mode = |mode: usize| moments.iter().skip(mode).step_by(count).copied();
         let wave = |number: usize| {
             let pairs = of_mode(2 * number + 1).zip(of_mode(2 * number + 2));
-            pairs.map(|(cosine, sine)| Wave::new(cosine, -sine)).collect()
+            pairs
+                .map(|(cosine, sine)| Wave::new(cosine, -sine))
+                .collect()
         };
         Parts {
             mean: of_mode(0).collect(),
@@ -187,22 +195,25 @@ impl HarmonicFactors {
     fn solve_half<const R: usize>(&self, parts: &mut [Parts; R], odd: usize) {
         let mut means = parts.each_mut().map(|part| std::mem::take(&mut part.mean));
         let mut waves: Vec<[Vec<Wave>; R]> = (0..self.waves.len())
-            .map(|number| parts.each_mut().map(|part| std::mem::take(&mut part.waves[number])))
+            .map(|number| {
+                parts
+                    .each_mut()
+                    .map(|part| std::mem::take(&mut part.waves[number]))
+            })
             .collect();
         rayon::join(
             || {
                 if odd == 0 {
                     // The held place is as given, which is nothing.
-                    let (factors, scale) = &self.mean;
-                    substitute(&self.symbolic, factors, *scale, Some(self.position), &mut means);
+                    self.mean
+                        .solve(&self.symbolic, Some(self.position), &mut means);
                 }
             },
             || {
                 let numbered = waves.par_iter_mut().enumerate();
                 let half = numbered.filter(|(number, _)| (number + 1) % 2 == odd);
                 half.for_each(|(number, waves)| {
-                    let (factors, scale) = &self.waves[number];
-                    substitute(&self.symbolic, factors, *scale, None, waves);
+                    self.waves[number].solve(&self.symbolic, None, waves);
                 });
             },
         );
@@ -222,29 +233,18 @@ impl HarmonicFactors {
         rayon::join(
             || {
                 if odd == 0 {
-                    let (factors, scale) = &self.mean;
-                    let order = &self.symbolic.order;
-                    let mut x: Vec<f64> = order.iter().map(|&at| mean[at as usize]).collect();
-                    solve_transposed(&self.symbolic, &factors.fronts, &mut x);
-                    for (&at, value) in order.iter().zip(x) {
-                        mean[at as usize] = value / scale;
-                    }
-                    mean[order[self.position] as usize] = 0.0;
+                    self.mean.solve_transposed(&self.symbolic, mean);
+                    mean[self.symbolic.order[self.position] as usize] = 0.0;
                 }
             },
             || {
                 let numbered = waves.par_iter_mut().enumerate();
                 let half = numbered.filter(|(number, _)| (number + 1) % 2 == odd);
                 half.for_each(|(number, wave)| {
-                    let (factors, scale) = &self.waves[number];
-                    let order = &self.symbolic.order;
                     // The adjoint: what turns forward turns backward.
-                    let mut x: Vec<Wave> =
-                        order.iter().map(|&at| wave[at as usize].conj()).collect();
-                    solve_transposed(&self.symbolic, &factors.fronts, &mut x);
-                    for (&at, value) in order.iter().zip(x) {
-                        wave[at as usize] = value.conj() / *scale;
-                    }
+                    wave.iter_mut().for_each(|value| *value = value.conj());
+                    self.waves[number].solve_transposed(&self.symbolic, wave);
+                    wave.iter_mut().for_each(|value| *value = value.conj());
                 });
             },
         );
@@ -253,7 +253,10 @@ impl HarmonicFactors {
     /// Takes off the right sides of odd harmonics what even ones send.
     fn send(&self, parts: &mut Parts) {
         let Parts { mean, waves } = parts;
-        let (odd, even): (Vec<_>, Vec<_>) = waves.iter_mut().enumerate().partition(|(number, _)| number % 2 == 0);
+        let (odd, even): (Vec<_>, Vec<_>) = waves
+            .iter_mut()
+            .enumerate()
+            .partition(|(number, _)| number % 2 == 0);
         odd.into_par_iter().for_each(|(number, wave)| {
             // Harmonic `number + 1`, whose neighbours are the mean or the wave before, and the wave after.
             match number {
@@ -269,7 +272,10 @@ impl HarmonicFactors {
     /// The transpose of [`HarmonicFactors::send`].
     fn send_transposed(&self, parts: &mut Parts) {
         let Parts { mean, waves } = parts;
-        let (odd, even): (Vec<_>, Vec<_>) = waves.iter_mut().enumerate().partition(|(number, _)| number % 2 == 0);
+        let (odd, even): (Vec<_>, Vec<_>) = waves
+            .iter_mut()
+            .enumerate()
+            .partition(|(number, _)| number % 2 == 0);
         if let Some((_, first)) = odd.first() {
             self.blocks.from_mean_transposed(first, mean);
         }
@@ -291,59 +297,84 @@ impl HarmonicFactors {
 
 /// The place with the largest mass, whatever its sign.
 fn largest(masses: &[f64]) -> usize {
-    (0..masses.len()).fold(0, |best, place| match masses[place].abs() > masses[best].abs() {
-        true => place,
-        false => best,
+    (0..masses.len()).fold(0, |best, place| {
+        match masses[place].abs() > masses[best].abs() {
+            true => place,
+            false => best,
+        }
     })
 }
 
-/// Factors of rates between places, with the place at a position in the order of elimination held; with their scale.
+/// Factors of rates between places, with the place at a position in the order of elimination held.
 fn factors<T: Number>(
     symbolic: &Symbolic,
     mut rates: Vec<T::Wide>,
     held: Option<usize>,
     cancellation: &Cancellation,
-) -> Result<(Factors<T>, f64), Cancelled> {
-    let largest = rates.iter().fold(0.0_f64, |most, rate| most.max(rate.size()));
+) -> Result<Scaled<T>, Cancelled> {
+    let largest = rates
+        .iter()
+        .fold(0.0_f64, |most, rate| most.max(rate.size()));
     let scale = match largest > 0.0 && largest.is_finite() {
         true => largest.log2().round().exp2(),
         false => 1.0,
     };
-    rates.iter_mut().for_each(|rate| *rate = *rate * scale.recip());
+    rates
+        .iter_mut()
+        .for_each(|rate| *rate = *rate * scale.recip());
     let mut factors = allocate(symbolic);
-    factorise(symbolic, &rates, held.unwrap_or(usize::MAX), &mut factors, cancellation)?;
-    Ok((factors, scale))
+    let held = held.unwrap_or(usize::MAX);
+    factorise(symbolic, &rates, held, &mut factors, cancellation)?;
+    // The room for updates is given back: there are as many factors as harmonics.
+    let fronts = factors.fronts;
+    Ok(Scaled { fronts, scale })
 }
 
-/// Solves with the factors of a matrix over `scale`, in place, place by place; the place at `held` in the order of
-/// elimination is zero.
-fn substitute<T: Number, const R: usize>(
-    symbolic: &Symbolic,
-    factors: &Factors<T>,
-    scale: f64,
-    held: Option<usize>,
-    vectors: &mut [Vec<T::Wide>; R],
-) {
-    let order = &symbolic.order;
-    let mut ordered = vectors
-        .each_ref()
-        .map(|vector| order.iter().map(|&place| vector[place as usize]).collect::<Vec<T::Wide>>());
-    if let Some(held) = held {
-        ordered.iter_mut().for_each(|vector| vector[held] = T::Wide::default());
-    }
-    triangular::solve(symbolic, &factors.fronts, ordered.each_mut().map(Vec::as_mut_slice));
-    for (vector, ordered) in vectors.iter_mut().zip(ordered) {
-        for (&place, value) in order.iter().zip(ordered) {
-            vector[place as usize] = value * scale.recip();
+impl<T: Number> Scaled<T> {
+    /// Solves in place, place by place; the place at `held` in the order of elimination is zero.
+    fn solve<const R: usize>(
+        &self,
+        symbolic: &Symbolic,
+        held: Option<usize>,
+        vectors: &mut [Vec<T::Wide>; R],
+    ) {
+        let mut ordered = vectors.each_ref().map(|vector| in_order(symbolic, vector));
+        if let Some(held) = held {
+            let zero = |vector: &mut Vec<T::Wide>| vector[held] = T::Wide::default();
+            ordered.iter_mut().for_each(zero);
+        }
+        let each = ordered.each_mut().map(Vec::as_mut_slice);
+        triangular::solve(symbolic, &self.fronts, each);
+        for (vector, ordered) in vectors.iter_mut().zip(&ordered) {
+            self.put_back(symbolic, ordered, vector);
         }
     }
+
+    /// The same with the transposed factors, and no place held.
+    fn solve_transposed(&self, symbolic: &Symbolic, vector: &mut [T::Wide]) {
+        let mut ordered = in_order(symbolic, vector);
+        solve_transposed(symbolic, &self.fronts, &mut ordered);
+        self.put_back(symbolic, &ordered, vector);
+    }
+
+    fn put_back(&self, symbolic: &Symbolic, ordered: &[T::Wide], vector: &mut [T::Wide]) {
+        for (&place, &value) in symbolic.order.iter().zip(ordered) {
+            vector[place as usize] = value * self.scale.recip();
+        }
+    }
+}
+
+/// Numbers of places in the order of elimination.
+fn in_order<W: Copy>(symbolic: &Symbolic, vector: &[W]) -> Vec<W> {
+    let order = symbolic.order.iter();
+    order.map(|&place| vector[place as usize]).collect()
 }
 
 /// Steady state of the averaged generator, one at the held place.
 fn steady(
     symbolic: &Symbolic,
     blocks: &Blocks,
-    (factors, scale): &(Factors<f32>, f64),
+    mean: &Scaled<f32>,
     (place, position): (usize, usize),
 ) -> Vec<f64> {
     // What the held place sends is balanced by the rest.
@@ -352,7 +383,7 @@ fn steady(
         sent[blocks.pattern.indices()[entry]] = -blocks.mean[entry];
     }
     let mut found = [sent];
-    substitute(symbolic, factors, *scale, Some(position), &mut found);
+    mean.solve(symbolic, Some(position), &mut found);
     let [mut null] = found;
     null[place] = 1.0;
     null

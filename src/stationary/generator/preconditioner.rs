@@ -25,6 +25,10 @@ pub(super) const LARGE: u64 = 16 << 20;
 /// and warm starts last longer with them. It is about four for two modes, and rises with the square of their number.
 const MUCH_MORE: f64 = 4.0;
 
+/// Operations of factors of all nodes of a phase together that are few, whatever its harmonics one by one would take:
+/// a fraction of a second on two cores, and no forcing is too strong for them.
+const FEW_OPERATIONS: f64 = 1e10;
+
 /// Copies of a matrix that are made on the way to its factors: scaled, in the order of elimination, by fronts.
 const COPIES: u64 = 4;
 
@@ -139,7 +143,8 @@ fn grid(space: &CellSpace, structure: &Structure, method: RateMethod) -> Grid {
     Grid::new(&space.shape(), &reach, LEAF).fold_at(structure.folded)
 }
 
-/// The grid of the places at which modes stand, that of all other axes; `None` where there are no Legendre modes.
+/// The grid of the places at which modes stand that are taken one by one, that of all other axes; `None` where there
+/// are none.
 fn grid_of_places(space: &CellSpace, structure: &Structure) -> Option<Grid> {
     let (places, kept) = others(space)?;
     let reach = kept.iter().map(|&axis| structure.reach.get(axis).copied());
@@ -152,7 +157,7 @@ fn grid_of_places(space: &CellSpace, structure: &Structure) -> Option<Grid> {
     Some(grid(&places, &of_places, RateMethod::Modewise))
 }
 
-/// Predicts what factors of every mode by itself take; `None` where there are no Legendre modes.
+/// Predicts what factors of every mode by itself take; `None` where there are no modes that can be taken so.
 fn predict_modewise(space: &CellSpace, structure: &Structure) -> Option<Estimate> {
     let method = RateMethod::Modewise;
     let prediction = predict(&grid_of_places(space, structure)?);
@@ -163,11 +168,16 @@ fn predict_modewise(space: &CellSpace, structure: &Structure) -> Option<Estimate
     let number = method.bytes_per_number() as f64;
     let entries = modes * prediction.factor_entries + below;
     let change = places * modes.powi(2);
+    // A harmonic is a complex number for two modes, and a product of two of those four products.
+    let factorised = match has_phase(space) {
+        true => 2.0 * modes - 1.0,
+        false => modes,
+    };
     Some(Estimate {
         method,
         factor_bytes: (entries * number) as u64,
         peak_bytes: (modes * prediction.bytes(method.bytes_per_number()) + below * number) as u64,
-        operations: modes * prediction.operations + 4.0 * change * modes,
+        operations: factorised * prediction.operations + 4.0 * change * modes,
         iteration_operations: 2.0 * entries + 4.0 * change,
     })
 }
@@ -217,7 +227,13 @@ pub(super) fn estimate_of(
         (Some(RateMethod::Modewise), Some(plan)) => return Ok(plan),
         (None, Some(plan)) => {
             let whole = predict_method(space, structure, RateMethod::LuSingle);
-            if !fits(&whole) || whole.operations > MUCH_MORE * plan.operations {
+            let few = if has_phase(space) {
+                FEW_OPERATIONS
+            } else {
+                0.0
+            };
+            let is_much = whole.operations > few.max(MUCH_MORE * plan.operations);
+            if !fits(&whole) || is_much {
                 return Ok(plan);
             }
         }

@@ -144,12 +144,20 @@ impl Layout {
     }
 
     /// Moments of masses of cells, with another number in place of one of them.
-    pub(in crate::stationary::generator) fn moments(&self, masses: &[f64], given: (usize, f64)) -> Vec<f64> {
+    pub(in crate::stationary::generator) fn moments(
+        &self,
+        masses: &[f64],
+        given: (usize, f64),
+    ) -> Vec<f64> {
         self.sum_over_nodes(&self.values, masses, given)
     }
 
     /// The transpose of [`Layout::masses`], with another number in place of one of the cells'.
-    pub(in crate::stationary::generator) fn moments_by_weights(&self, values: &[f64], given: (usize, f64)) -> Vec<f64> {
+    pub(in crate::stationary::generator) fn moments_by_weights(
+        &self,
+        values: &[f64],
+        given: (usize, f64),
+    ) -> Vec<f64> {
         self.sum_over_nodes(&self.weighted, values, given)
     }
 
