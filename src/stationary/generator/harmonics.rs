@@ -16,7 +16,6 @@ mod blocks;
 mod tests;
 
 use faer::c32;
-use nalgebra::Complex;
 use rayon::prelude::*;
 use sprs::CsMat;
 
@@ -27,7 +26,7 @@ use super::number::{Number, Wide};
 use super::symbolic::Symbolic;
 use super::triangular::{self, transposed::solve_transposed};
 use crate::cancellation::{Cancellation, Cancelled};
-use blocks::{Blocks, blocks};
+use blocks::{Blocks, Wave, blocks};
 
 /// Share of its largest mass that the averaged generator's steady state must have in the held cell: with less, another
 /// cell is held.
@@ -35,9 +34,6 @@ const LEAST_HELD: f64 = 0.1;
 
 /// Cells that are tried one after the other.
 const TRIED: usize = 3;
-
-/// A number of a harmonic at a place: cosine minus i times sine, of orthonormal functions.
-type Wave = Complex<f64>;
 
 /// The factors.
 pub(super) struct HarmonicFactors {

@@ -5,12 +5,15 @@ use std::f64::consts::{SQRT_2, TAU};
 use std::ops::Range;
 
 use faer::c32;
+use nalgebra::Complex;
 use rayon::prelude::*;
 use sprs::CsMat;
 
-use super::Wave;
 use crate::stationary::generator::modewise::Layout;
 use crate::stationary::generator::number::Number;
+
+/// A number of a harmonic at a place: cosine minus i times sine, of orthonormal functions.
+pub(super) type Wave = Complex<f64>;
 
 /// The blocks. Rates between places are by columns, as entries of the pattern.
 pub(super) struct Blocks {

@@ -61,7 +61,7 @@ fn solve(space: &CellSpace, generator: &Generator, method: RateMethod) -> RateSt
 #[test]
 fn all_harmonics_together_and_each_by_itself_have_the_same_steady_state() {
     // The stronger the forcing is against the spread, the more iterations.
-    for (case, most) in [(WEAK, 15), (STRONG, 40), (WELLS, 55), (RESONANT, 140)] {
+    for (case, most) in [(WEAK, 20), (STRONG, 50), (WELLS, 70), (RESONANT, 170)] {
         for harmonics in [1, 4, 5] {
             let space = space(case, 16, harmonics);
             let generator = generator(&space, case);
