@@ -1,6 +1,6 @@
 //! The systems of the gallery against what is known: exact values of their changes, exact densities, free trajectories.
 
-use pbif::continuation::{BifurcationStatus, SweepResult};
+use pbif::continuation::{BifurcationStatus, Point, SweepResult};
 use pbif::density::{EstimatedDensity, total_variation};
 use pbif::sweep_file::starting_files;
 
@@ -190,13 +190,18 @@ fn the_colour_of_noise_alone_splits_a_peak() {
     assert_located(&found, "x", 0.191_369, 1e-4);
 }
 
+/// A measure of a solved value, with its error.
+fn measured(point: &Point, name: &str) -> (f64, f64) {
+    let mut measures = point.report.measures.iter();
+    let found = measures.find(|one| one.name == name).unwrap();
+    (found.value, found.error.unwrap())
+}
+
 #[test]
 fn a_double_well_resonates_as_linear_response_says() {
     let only = "sweep.from=0.12 sweep.to=0.4 sweep.points=2 locate.grid_check=off";
     let found = run("stochastic_resonance", only);
-    let report = &found.points[0].report;
-    let value = report.measure("amplification_x").unwrap();
-    let error = report.error_of("amplification_x").unwrap();
+    let (value, error) = measured(&found.points[0], "amplification_x");
     // By complex harmonics of another program.
     assert!(
         (value - 9.265_904).abs() < error && error < 0.05,
@@ -214,8 +219,7 @@ fn a_pendulum_turns_with_its_known_velocity() {
         (found.points.last().unwrap(), 1.694_755),
     ];
     for (point, exact) in known {
-        let value = point.report.measure("velocity_phi").unwrap();
-        let error = point.report.error_of("velocity_phi").unwrap();
+        let (value, error) = measured(point, "velocity_phi");
         let off = (value - exact).abs();
         assert!(off < error + 1e-6 && error < 1e-2, "{value} ± {error:e}");
     }
@@ -252,9 +256,7 @@ fn mathieu_has_the_variance_of_its_moment_equations() {
         }
         moments = [0, 1, 2].map(|i| moments[i] + step / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]));
     }
-    let report = &found.points.last().unwrap().report;
-    let value = report.measure("sd_x").unwrap();
-    let error = report.error_of("sd_x").unwrap();
+    let (value, error) = measured(found.points.last().unwrap(), "sd_x");
     let off = (value - average.sqrt()).abs();
     assert!(
         off < error && error < 5e-3,
@@ -306,7 +308,7 @@ fn a_forced_duffing_oscillator_agrees_with_free_trajectories_at_a_phase() {
             mass * overlap.max(0.0) / (edge[1] - edge[0])
         });
         let exact: f64 = inside.sum();
-        // Looks at the same oscillator a period of 21 apart hang together a little: twice the error of as many free ones.
+        // Looks at one oscillator a period of 21 apart hang together a little: twice the error of as many free ones.
         let error = 2.0 * (exact * (1.0 - exact) / f64::from(periods * many)).sqrt();
         assert!(
             (share - exact).abs() < 3.0 * error + 2e-3,

@@ -1,12 +1,13 @@
 //! Factors of a generator under periodic forcing, harmonic by harmonic of the phase.
 //!
-//! With p = Σ_k c_k e^{2πiks}, s the phase in periods, the average of the generator over a period takes no harmonic to
-//! another: what is left on the diagonal is Q₀ - ikω for each, Q₀ the averaged generator of the other axes. So there is
-//! one complex matrix of the size of the problem without forcing a harmonic, all with the same pattern; negative ones
-//! are conjugates. What the forcing adds as its cosine and sine takes a harmonic to its two neighbours, even ones to odd
-//! ones and back: the even harmonics are solved first, and what they send is taken off the right sides of the odd ones.
-//! What odd ones send back, and what couples harmonics that are further apart, some tens of iterations of GMRES make
-//! good, more the larger the motion is against the spread of the density, whatever the number of harmonics.
+//! With p = Σ_k c_k e^{2πiks}, s the phase in periods, the average of the generator over a period takes no harmonic
+//! to another: what is left on the diagonal is Q₀ - ikω for each, Q₀ the averaged generator of the other axes. So
+//! there is one complex matrix of the size of the problem without forcing a harmonic, all with the same pattern;
+//! negative ones are conjugates. What the forcing adds as its cosine and sine takes a harmonic to its two neighbours,
+//! even ones to odd ones and back: the even harmonics are solved first, and what they send is taken off the right
+//! sides of the odd ones. What odd ones send back, and what couples harmonics that are further apart, some tens of
+//! iterations of GMRES make good, more the larger the motion is against the spread of the density, whatever the
+//! number of harmonics.
 //!
 //! Memory and work grow in proportion to the number of harmonics; with factors of all nodes of the phase together they
 //! grow with its square and its cube.

@@ -32,8 +32,8 @@ pub(in crate::stationary::generator) fn has_phase(space: &CellSpace) -> bool {
     space.axes().iter().any(Axis::is_phase)
 }
 
-/// Whether the modes of each axis are taken one by one: those of a phase, of which the forcing alone takes to others; or
-/// else those that take from lower ones only.
+/// Whether the modes of each axis are taken one by one: those of a phase, of which the forcing alone takes to others;
+/// or else those that take from lower ones only.
 fn taken_apart(space: &CellSpace) -> Vec<bool> {
     let has_phase = has_phase(space);
     let is_apart = |axis: &Axis| match has_phase {
