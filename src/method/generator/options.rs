@@ -35,8 +35,8 @@ impl GeneratorMethodOptions {
     }
 }
 
-/// Cells an axis of the finer grid over those of this one, with up to two axes that are cut into cells and with more, of
-/// which the phase of a forcing is one.
+/// Cells an axis of the finer grid over those of this one, with up to two axes that are cut into cells and with more,
+/// of which the phase of a forcing is one.
 const FINER: [f64; 2] = [1.5, 1.25];
 
 /// The axes of the grid that checks what is found on this one.
