@@ -250,7 +250,7 @@ impl HarmonicFactors {
         odd.into_par_iter().for_each(|(number, wave)| {
             // Harmonic `number + 1`, whose neighbours are the mean or the wave before, and the wave after.
             match number {
-                0 => self.blocks.from_mean(mean, wave),
+                0 => self.blocks.mean_forward(mean, wave),
                 _ => self.blocks.forward(even[number / 2 - 1].1, wave),
             }
             if let Some((_, next)) = even.get(number / 2) {
@@ -267,7 +267,7 @@ impl HarmonicFactors {
             .enumerate()
             .partition(|(number, _)| number % 2 == 0);
         if let Some((_, first)) = odd.first() {
-            self.blocks.from_mean_transposed(first, mean);
+            self.blocks.mean_forward_transposed(first, mean);
         }
         even.into_par_iter().for_each(|(number, wave)| {
             let after = number.div_ceil(2);

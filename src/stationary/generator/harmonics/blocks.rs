@@ -153,7 +153,7 @@ impl Blocks {
     }
 
     /// Takes what the mean sends to the first harmonic off its right side.
-    pub(super) fn from_mean(&self, mean: &[f64], into: &mut [Wave]) {
+    pub(super) fn mean_forward(&self, mean: &[f64], into: &mut [Wave]) {
         self.scatter(into, |place, rate| rate * (SQRT_2 * mean[place]));
     }
 
@@ -167,8 +167,8 @@ impl Blocks {
         self.gather(into, |row, rate| rate * from[row]);
     }
 
-    /// The transpose of [`Blocks::from_mean`].
-    pub(super) fn from_mean_transposed(&self, from: &[Wave], into: &mut [f64]) {
+    /// The transpose of [`Blocks::mean_forward`].
+    pub(super) fn mean_forward_transposed(&self, from: &[Wave], into: &mut [f64]) {
         let mut sums = vec![Wave::default(); into.len()];
         self.gather(&mut sums, |row, rate| rate.conj() * from[row]);
         for (slot, sum) in into.iter_mut().zip(sums) {
