@@ -178,7 +178,8 @@ pub(super) fn by_indicator(
         root: zero,
     };
     let on_finer = depends_on_cells.then(|| {
-        let cells = (density, subject.cell_check);
+        let is_forced = subject.family.model().phase_axis().is_some();
+        let cells = (density, subject.cell_check, is_forced);
         on_finer_cells(&mut zero, &checked, cells, options, checks)
     });
     let on_finer = on_finer.flatten();
@@ -265,7 +266,7 @@ fn fall(check: CellCheck) -> f64 {
 fn on_finer_cells(
     zero: &mut Root,
     checked: &Checked<'_>,
-    (density, check): (&EstimatedDensity, CellCheck),
+    (density, check, is_forced): (&EstimatedDensity, CellCheck, bool),
     options: &Goal,
     checks: &mut dyn Checks,
 ) -> Option<Result<u8, Doubt>> {
@@ -281,7 +282,13 @@ fn on_finer_cells(
         match checks.on_finer_cells(&again, times) {
             Some(Ok(finer)) => {
                 let distance = share * chance * (finer.value - zero.value).abs();
-                let least = own.max(finer.error);
+                // What a forcing carries to and fro is off by no more than the schemes differ on the finer cells, of
+                // which the value is.
+                let least = if is_forced {
+                    finer.error
+                } else {
+                    own.max(finer.error)
+                };
                 let grid = distance.max(expected);
                 zero.error.grid = at_least(grid, (own, least), chance, density, options);
                 zero.value = finer.value;

@@ -114,6 +114,16 @@ pub(crate) const TURN_DIFFUSION: MeasureKind = kind(
     "{}^2/t",
     "effective diffusion of an angle whose turns are counted: half the rate at which its variance grows",
 );
+pub(crate) const AMPLITUDE: MeasureKind = kind(
+    "amplitude",
+    "{}",
+    "amplitude of the mean of a state at the frequency of the forcing",
+);
+pub(crate) const AMPLIFICATION: MeasureKind = kind(
+    "amplification",
+    "{}^2",
+    "spectral amplification: the same over the amplitude of the forcing, squared",
+);
 pub(crate) const DECAY_RATE: MeasureKind = kind(
     "decay_rate",
     "1/t",

@@ -69,15 +69,16 @@ impl<'a> Reporter<'a> {
         self.report.of(&ESCAPE_RATE, "").unwrap_or(0.0)
     }
 
-    /// Means and standard deviations of the axes, then of the quantities that are averaged; those of angles, which
-    /// depend on where the turn is cut, are left out. What may lie beyond the ends of the ranges adds to their errors.
+    /// Means and standard deviations of the axes, then of the quantities that are averaged; those of angles and of a
+    /// phase, which depend on where the turn is cut, are left out. What may lie beyond the ends of the ranges adds to
+    /// their errors.
     pub(super) fn moments(&mut self, estimated: &[EstimatedMoments]) {
         let ends = tails::beyond(self.space(), (&self.beyond, self.leak), estimated);
         let family = self.problem.family();
-        let axes = &family.model().axes;
-        let is_angle = |index: &usize| axes.get(*index).is_some_and(|axis| axis.is_angle);
+        let axes = self.space().dimension();
+        let lines: Vec<usize> = family.states_on_lines().map(|(index, _)| index).collect();
         let told = estimated.iter().enumerate();
-        let told = told.filter(|(index, _)| !is_angle(index));
+        let told = told.filter(|(index, _)| *index >= axes || lines.contains(index));
         for (name, (index, one)) in family.averages().zip(told) {
             let beyond = ends.of(index, &one.moments);
             let numbers = [

@@ -6,7 +6,7 @@
 //! trigonometric polynomials that are one at a node and zero at the others (C. Canuto et al., *Spectral Methods*,
 //! 2006).
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{PI, SQRT_2, TAU};
 
 /// Derivatives at the nodes of the trigonometric polynomials that are one at a node: entry `k · count + i` is ℓ_i'(node
 /// k), for an odd number of nodes on a turn of this length. Rows and columns sum to zero.
@@ -25,6 +25,20 @@ pub(super) fn fourier_derivatives(count: usize, length: f64) -> Vec<f64> {
     };
     let entries = (0..count * count).map(|at| TAU / length * entry(at / count, at % count));
     entries.collect()
+}
+
+/// The first `count` of 1, √2 cos 2πs, √2 sin 2πs, √2 cos 4πs, …: orthonormal over a turn, and over an odd number of
+/// even nodes on it that is at least as large.
+pub(super) fn waves(count: usize, s: f64) -> Vec<f64> {
+    let wave = |number: usize| {
+        let (sine, cosine) = (TAU * number.div_ceil(2) as f64 * s).sin_cos();
+        match number {
+            0 => 1.0,
+            _ if number % 2 == 1 => SQRT_2 * cosine,
+            _ => SQRT_2 * sine,
+        }
+    };
+    (0..count).map(wave).collect()
 }
 
 /// What the mass at a node adds to the density at a place that many turns after it, times the length of the turn: 1 + 2

@@ -15,6 +15,14 @@
 //! hundred modes, costs seconds. Which of the two is made follows from the predicted work; where modes one by one do
 //! not converge (an equation that is no polynomial along the state), the others are made, if they fit.
 //!
+//! **Harmonics one by one.** Under a periodic forcing the average of the generator over the period takes no harmonic
+//! of the phase to another; `stationary::generator::harmonics` factorises it minus ikω for each, a complex matrix of
+//! the size of the other axes, and takes the forcing's way from even harmonics to odd ones along. GMRES makes good
+//! the rest in 10 to 40 iterations where the motion is up to about twice the spread of the density, and in 85 to 120
+//! at six times, whatever the number of harmonics. Cosine and sine of a harmonic are one complex number, which holds
+//! half the numbers that both as real unknowns would. On one axis factors of all nodes together cost little, and are
+//! made.
+//!
 //! White noise behind a linear filter is an axis of the same kind, with Hermite's polynomials and the nodes of their
 //! rule (`Axis::hermite`): there the filter's generator is exact. `system/coloured` puts such filters before the noises
 //! of any model, so that no method knows of them.

@@ -63,6 +63,10 @@ pub fn starting_files() -> &'static [StartingFile] {
         "bouc_wen",
         "bliman_sorine",
         "coloured_bistable",
+        "stochastic_resonance",
+        "forced_duffing",
+        "mathieu",
+        "pendulum",
     )
 }
 

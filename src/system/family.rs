@@ -285,9 +285,16 @@ impl Family {
     /// Names of what means are taken of: the axes of the state that are no angles, then the quantities that are
     /// averaged.
     pub(crate) fn averages(&self) -> impl Iterator<Item = &str> {
-        let axes = self.model.axes.iter().filter(|axis| !axis.is_angle);
-        let axes = axes.map(|axis| axis.name.as_str());
+        let axes = self.states_on_lines().map(|(_, name)| name);
         axes.chain(self.averaged.iter().map(|quantity| quantity.name()))
+    }
+
+    /// Axes that do not close on themselves, which angles and the phase of a forcing do, with their names.
+    pub(crate) fn states_on_lines(&self) -> impl Iterator<Item = (usize, &str)> {
+        let phase = self.model.phase_axis();
+        let axes = self.model.axes.iter().enumerate();
+        let lines = axes.filter(move |(index, axis)| !axis.is_angle && phase != Some(*index));
+        lines.map(|(index, axis)| (index, axis.name.as_str()))
     }
 
     /// Axes of the state that are angles, with their names.

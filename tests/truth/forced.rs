@@ -3,6 +3,16 @@
 use crate::common::numbers::{Numbers, given};
 use crate::common::sweeps::{rows, swept};
 use pbif::continuation::BifurcationStatus;
+use pbif::density::Density;
+
+/// Numbers between others, the same everywhere.
+fn dice(seed: u64) -> impl FnMut(f64, f64) -> f64 {
+    let mut dice = Numbers(given("OTHER_SEEDS", seed));
+    move |from: f64, to: f64| {
+        let unit = dice.next() as f64 / u64::MAX as f64;
+        from + unit * (to - from)
+    }
+}
 
 /// Amplitude over standard deviation from where on the density of a moving normal density has two peaks over a period:
 /// the zero of the confluent hypergeometric function ₁F₁(3/2; 1; -r²/2), by its series.
@@ -31,11 +41,7 @@ fn ratio() -> f64 {
 
 #[test]
 fn the_split_over_a_period_of_random_linear_systems_is_within_its_error() {
-    let mut dice = Numbers(given("OTHER_SEEDS", 300));
-    let mut between = |from: f64, to: f64| {
-        let unit = dice.next() as f64 / u64::MAX as f64;
-        from + unit * (to - from)
-    };
+    let mut between = dice(300);
     for case in 0..6 {
         let (k, w, d) = (
             between(0.3, 2.0),
@@ -64,5 +70,71 @@ fn the_split_over_a_period_of_random_linear_systems_is_within_its_error() {
         assert_eq!(row.status(), BifurcationStatus::Located, "{case}");
         assert!(off <= row.error, "{case}: {off:e} of {:e}", row.error);
         assert!(row.error < 3e-4 * exact, "{case}: {:e}", row.error);
+    }
+}
+
+/// Half of the L1 distance between a density over a period and that of a place that is normal, with this deviation,
+/// about a mean that moves as a cosine with this amplitude.
+fn off_by(density: &Density, amplitude: f64, deviation: f64) -> f64 {
+    let below = |x: f64| 0.5 * statrs::function::erf::erfc(-x / deviation / 2_f64.sqrt());
+    let phases = 400;
+    let edges = density.axes[0].edges();
+    let cells = edges.windows(2).zip(density.masses());
+    let distances = cells.map(|(edge, mass)| {
+        let at = |step: i32| {
+            let angle = std::f64::consts::TAU * f64::from(step) / f64::from(phases);
+            let mean = amplitude * angle.cos();
+            below(edge[1] - mean) - below(edge[0] - mean)
+        };
+        (mass - (0..phases).map(at).sum::<f64>() / f64::from(phases)).abs()
+    });
+    0.5 * distances.sum::<f64>()
+}
+
+#[test]
+fn splits_over_a_period_of_random_linear_oscillators_are_within_their_errors() {
+    let mut between = dice(310);
+    for case in 0..2 {
+        let (k, g, w) = (between(0.5, 2.0), between(0.3, 1.2), between(0.4, 2.0));
+        let temperature = 10.0_f64.powf(between(-1.0, 0.5));
+        // x'' = -g x' - k x + F cos(w t) + √(2 g T) ξ: variances T/k of x and T of y about means that move with the
+        // amplitudes F/Z and w F/Z.
+        let resistance = (k - w * w).hypot(g * w);
+        let deviations = [(temperature / k).sqrt(), temperature.sqrt()];
+        let amplitudes = [1.0 / resistance, w / resistance];
+        let exact: Vec<f64> = (0..2)
+            .map(|axis| ratio() * deviations[axis] / amplitudes[axis])
+            .collect();
+        let from = 0.7 * exact[0].min(exact[1]);
+        let to = 1.2 * exact[0].max(exact[1]);
+        let text = format!(
+            "[system.equations]\nx = \"y\"\ny = \"-g y - k x + F cos(w t)\"\n\
+             [system.noise]\ny = \"sqrt(2 g T)\"\n\
+             [system.parameters]\nk = {k}\ng = {g}\nw = {w}\nT = {temperature}\n\
+             [sweep]\nparameter = \"F\"\nfrom = {from}\nto = {to}\npoints = 5\n\
+             [detect]\nmarginals = [\"x @ mean\", \"y @ mean\"]\njoint = []\n\
+             [locate]\nrelative_tolerance = 0.01\n"
+        );
+        let (_, result) = swept(&text, "");
+        for (axis, name) in ["x", "y"].into_iter().enumerate() {
+            let [row] = rows(&result, name)[..] else {
+                panic!("{case}: one change of {name} over the period\n{text}");
+            };
+            let off = (row.value - exact[axis]).abs();
+            println!(
+                "{case} {name}: {} ± {:.1e}, off by {off:.1e}",
+                row.value, row.error
+            );
+            assert_eq!(row.status(), BifurcationStatus::Located, "{case} {name}");
+            assert!(off <= row.error, "{case}: {off:e} of {:e}", row.error);
+        }
+        for point in [&result.points[0], &result.points[result.points.len() - 1]] {
+            for axis in 0..2 {
+                let density = &point.densities[axis].density;
+                let off = off_by(density, point.value * amplitudes[axis], deviations[axis]);
+                // What is asked of the cells, `cells.accuracy`.
+                assert!(off < 1e-3, "{case}, {}, {axis}: {off:e}", point.value);
+            }
+        }
     }
 }

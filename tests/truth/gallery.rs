@@ -1,9 +1,10 @@
 //! The systems of the gallery against what is known: exact values of their changes, exact densities, free trajectories.
 
-use pbif::continuation::{BifurcationStatus, SweepResult};
+use pbif::continuation::{BifurcationStatus, Point, SweepResult};
 use pbif::density::{EstimatedDensity, total_variation};
 use pbif::sweep_file::starting_files;
 
+use crate::common::numbers::Numbers;
 use crate::common::sweeps::{rows, swept};
 
 fn run(name: &str, settings: &str) -> SweepResult {
@@ -187,4 +188,131 @@ fn the_colour_of_noise_alone_splits_a_peak() {
     let settings = "sweep.points=4 cells.x.count=120 cells.noise.modes=10";
     let found = run("coloured_bistable", settings);
     assert_located(&found, "x", 0.191_369, 1e-4);
+}
+
+/// A measure of a solved value, with its error.
+fn measured(point: &Point, name: &str) -> (f64, f64) {
+    let mut measures = point.report.measures.iter();
+    let found = measures.find(|one| one.name == name).unwrap();
+    (found.value, found.error.unwrap())
+}
+
+#[test]
+fn a_double_well_resonates_as_linear_response_says() {
+    let only = "sweep.from=0.12 sweep.to=0.4 sweep.points=2 locate.grid_check=off";
+    let found = run("stochastic_resonance", only);
+    let (value, error) = measured(&found.points[0], "amplification_x");
+    // By complex harmonics of another program.
+    assert!(
+        (value - 9.265_904).abs() < error && error < 0.05,
+        "{value} ± {error:e}"
+    );
+}
+
+#[test]
+fn a_pendulum_turns_with_its_known_velocity() {
+    let ends = "sweep.from=0.5 sweep.points=2 locate.grid_check=off";
+    let found = run("pendulum", ends);
+    // By a product of Hermite and Fourier modes, 40 × 25, of another program.
+    let known = [
+        (&found.points[0], 0.328_288),
+        (found.points.last().unwrap(), 1.694_755),
+    ];
+    for (point, exact) in known {
+        let (value, error) = measured(point, "velocity_phi");
+        let off = (value - exact).abs();
+        assert!(off < error + 1e-6 && error < 1e-2, "{value} ± {error:e}");
+    }
+}
+
+/// Derivatives of E x², E xy and E y² of Mathieu's oscillator of the gallery at a time.
+fn mathieu_moments(e: f64, time: f64, [xx, xy, yy]: [f64; 3]) -> [f64; 3] {
+    let (g, d, stiffness) = (0.2, 0.1, 1.0 + e * (2.0 * time).cos());
+    [
+        2.0 * xy,
+        yy - 2.0 * g * xy - stiffness * xx,
+        -4.0 * g * yy - 2.0 * stiffness * xy + 2.0 * d,
+    ]
+}
+
+#[test]
+fn mathieu_has_the_variance_of_its_moment_equations() {
+    let found = run("mathieu", "sweep.points=2 locate.grid_check=off");
+    let e = found.points.last().unwrap().value;
+    // Runge and Kutta's rule until nothing changes any more, then over one period of length π.
+    let steps = 2000;
+    let step = std::f64::consts::PI / f64::from(steps);
+    let add = |a: [f64; 3], b: [f64; 3], h: f64| [0, 1, 2].map(|i| a[i] + h * b[i]);
+    let (mut moments, mut average) = ([0.25, 0.0, 0.25], 0.0);
+    let periods = 60;
+    for count in 0..periods * steps {
+        let time = f64::from(count % steps) * step;
+        let a = mathieu_moments(e, time, moments);
+        let b = mathieu_moments(e, time + 0.5 * step, add(moments, a, 0.5 * step));
+        let c = mathieu_moments(e, time + 0.5 * step, add(moments, b, 0.5 * step));
+        let d = mathieu_moments(e, time + step, add(moments, c, step));
+        if count >= (periods - 1) * steps {
+            average += moments[0] / f64::from(steps);
+        }
+        moments = [0, 1, 2].map(|i| moments[i] + step / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]));
+    }
+    let (value, error) = measured(found.points.last().unwrap(), "sd_x");
+    let off = (value - average.sqrt()).abs();
+    assert!(
+        off < error && error < 5e-3,
+        "{value} ± {error:e}, {}",
+        average.sqrt()
+    );
+}
+
+#[test]
+fn a_forced_duffing_oscillator_agrees_with_free_trajectories_at_a_phase() {
+    let ends = "sweep.from=0.1 sweep.to=0.2 sweep.points=2 locate.grid_check=off";
+    let found = run("forced_duffing", ends);
+    let point = found.points.last().unwrap();
+    let phase = |one: &&EstimatedDensity| one.observable.name(&found.subject.family) == "x_phase_0";
+    let density = &point.densities.iter().find(phase).unwrap().density;
+    // Heun's method, so many oscillators, looked at once a period after some tens of them.
+    let (g, w, t, f) = (0.3, 0.3, 0.12, 0.2_f64);
+    let mut dice = Numbers(11);
+    let mut unit = move || (dice.next() >> 11) as f64 / (1_u64 << 53) as f64;
+    let mut normal =
+        move || (-2.0 * (1.0 - unit()).ln()).sqrt() * (std::f64::consts::TAU * unit()).cos();
+    let (steps, burn_in, periods, many) = (800, 20, 60, 40);
+    let step = std::f64::consts::TAU / w / f64::from(steps);
+    let force = |x: f64, y: f64, time: f64| -g * y + x - x.powi(3) + f * (w * time).cos();
+    let bins = [-1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5];
+    let mut counts = [0.0; 6];
+    for one in 0..many {
+        let (mut x, mut y) = (if one % 2 == 0 { 1.0 } else { -1.0 }, 0.0);
+        for period in 0..burn_in + periods {
+            for count in 0..steps {
+                let time = f64::from(count) * step;
+                let kick = (2.0 * g * t * step).sqrt() * normal();
+                let slope = force(x, y, time);
+                let (far, fast) = (x + y * step, y + slope * step + kick);
+                x += 0.5 * (y + fast) * step;
+                y += 0.5 * (slope + force(far, fast, time + step)) * step + kick;
+            }
+            let bin = bins.windows(2).position(|bin| bin[0] <= x && x < bin[1]);
+            if let Some(bin) = bin.filter(|_| period >= burn_in) {
+                counts[bin] += 1.0 / f64::from(periods * many);
+            }
+        }
+    }
+    let axis = &density.axes[0];
+    for (bin, share) in bins.windows(2).zip(counts) {
+        let cells = axis.edges().windows(2).zip(density.masses());
+        let inside = cells.map(|(edge, mass)| {
+            let overlap = edge[1].min(bin[1]) - edge[0].max(bin[0]);
+            mass * overlap.max(0.0) / (edge[1] - edge[0])
+        });
+        let exact: f64 = inside.sum();
+        // Looks at one oscillator a period of 21 apart hang together a little: twice the error of as many free ones.
+        let error = 2.0 * (exact * (1.0 - exact) / f64::from(periods * many)).sqrt();
+        assert!(
+            (share - exact).abs() < 3.0 * error + 2e-3,
+            "{bin:?}: {share} {exact}"
+        );
+    }
 }

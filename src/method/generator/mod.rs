@@ -5,6 +5,7 @@
 mod angles_tests;
 mod coarse;
 mod cost;
+mod forcing;
 mod jumps;
 #[cfg(feature = "serde")]
 mod memory;

@@ -35,7 +35,8 @@ impl GeneratorMethodOptions {
     }
 }
 
-/// Cells an axis of the finer grid over those of this one, with up to two axes that are cut into cells and with more.
+/// Cells an axis of the finer grid over those of this one, with up to two axes that are cut into cells and with more,
+/// of which the phase of a forcing is one.
 const FINER: [f64; 2] = [1.5, 1.25];
 
 /// The axes of the grid that checks what is found on this one.
@@ -47,8 +48,9 @@ pub(super) fn finer_axes(space: &CellSpace) -> Vec<Axis> {
 
 /// Which of the factors is meant.
 pub(super) fn finer_factor(space: &CellSpace) -> f64 {
-    let cut = space.axes().iter().filter(|axis| !axis.is_modes());
-    FINER[usize::from(cut.count() > 2)]
+    // A phase multiplies cells as a third axis does.
+    let many = |axis: &&Axis| !axis.is_modes() || axis.is_phase();
+    FINER[usize::from(space.axes().iter().filter(many).count() > 2)]
 }
 
 impl Default for GeneratorMethodOptions {

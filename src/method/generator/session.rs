@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use super::GeneratorSource;
 use super::coarse::{COARSE, Coarseness, rough_relaxation};
+use super::forcing::Forced;
 use super::one_axis;
 use super::passages::{add_passages, at_nodes};
 use super::relaxation::Relaxation;
@@ -277,6 +278,8 @@ impl GeneratorSession {
             .report
             .measures
             .extend(self.rotations(solved, &second.change)?);
+        let answers = self.answers_to_forcing(solved, &second.change);
+        reporter.report.measures.extend(answers);
         let cells = Cells {
             system: solved.system.as_ref(),
             space,
@@ -326,6 +329,23 @@ impl GeneratorSession {
             found.extend(rotation(&steady, angle, &mut self.solver)?);
         }
         Ok(found)
+    }
+
+    /// How states answer to a forcing; nothing in a check.
+    fn answers_to_forcing(&self, solved: &PointSolve, change: &[f64]) -> Vec<Measure> {
+        let family = self.source.problem.family();
+        let Some(phase) = family.model().phase_axis().filter(|_| !self.source.checks) else {
+            return Vec::new();
+        };
+        let forced = Forced {
+            system: solved.system.as_ref(),
+            space: self.source.problem.space(),
+            phase,
+            unknowns: &solved.steady.mass,
+            change,
+            error: solved.steady.info.error_estimate,
+        };
+        forced.measures(family)
     }
 
     /// The time in which deviations die out, where mass escapes: a neighbour's, or that of fewer cells, where it will

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{GeneratorMethodOptions, GeneratorSource};
 use crate::cancellation::Cancellation;
-use crate::continuation::DensitySource as _;
+use crate::continuation::{DensitySource as _, SolveReport};
 use crate::density::{Density, Observable};
 use crate::method::Problem;
 use crate::space::{Axis, CellSpace};
@@ -107,28 +107,78 @@ fn a_forced_linear_system_is_a_moving_normal_density_at_all_phases() {
     assert!(off < 1e-5, "{off:e}");
 }
 
+/// Measures of a forced system at a value of `A`, by so many cells and harmonics.
+fn measured(
+    model: &Arc<Model>,
+    fixed: &[(&str, f64)],
+    amplitude: f64,
+    axes: Vec<Axis>,
+) -> SolveReport {
+    let path = Path::parameter("A", amplitude, amplitude);
+    let family = Family::new(Arc::clone(model), fixed, path).unwrap();
+    let space = CellSpace::new(axes).unwrap();
+    let problem = Problem::new(family, space, vec![Observable::Marginal(0)]).unwrap();
+    let source = GeneratorSource::new(&problem, &GeneratorMethodOptions::default()).unwrap();
+    let mut session = source.open(&Cancellation::new());
+    session.solve(amplitude).unwrap().report
+}
+
 #[test]
 fn a_forced_double_well_amplifies_as_linear_response_says() {
     let model = forced("x - x^3");
     // Of A = 0.01 and 0.3 with D = 0.12 and the frequency 0.1, by complex harmonics of another program.
     for (amplitude, exact) in [(0.01, 10.956_236), (0.3, 9.265_904)] {
-        let axes = vec![
-            Axis::uniform(-2.6, 2.6, 160).unwrap(),
-            Axis::fourier(0.0, 1.0, 12).unwrap(),
-        ];
-        let found = densities(&model, &[("w", 0.1), ("D", 0.12)], amplitude, axes);
-        let (mut cosine, mut sine) = (0.0, 0.0);
-        for (step, density) in found[1..].iter().enumerate() {
-            let angle = std::f64::consts::TAU * step as f64 / PHASES as f64;
-            cosine += mean(density) * angle.cos() * 2.0 / PHASES as f64;
-            sine += mean(density) * angle.sin() * 2.0 / PHASES as f64;
+        for (cells, harmonics) in [(160, 12), (60, 5)] {
+            let axes = vec![
+                Axis::uniform(-2.6, 2.6, cells).unwrap(),
+                Axis::fourier(0.0, 1.0, harmonics).unwrap(),
+            ];
+            let report = measured(&model, &[("w", 0.1), ("D", 0.12)], amplitude, axes);
+            let found = report.measure("amplification_x").unwrap();
+            let error = report.error_of("amplification_x").unwrap();
+            let off = (found - exact).abs();
+            assert!(
+                off < error + 5e-7,
+                "{amplitude} {cells}: {found} ± {error:e}"
+            );
+            let most = if cells == 160 { 1e-4 } else { 2e-1 };
+            assert!(error < most * exact, "{amplitude} {cells}: {error:e}");
+            // A phase has no mean.
+            assert_eq!(report.measure("mean_t"), None);
         }
-        let amplification = (cosine * cosine + sine * sine) / (amplitude * amplitude);
+    }
+}
+
+#[test]
+fn a_forced_linear_system_moves_with_its_exact_amplitude() {
+    let model = forced("-x");
+    let (w, amplitude) = (1.3, 0.5);
+    let axes = vec![
+        Axis::uniform(-2.6, 2.6, 100).unwrap(),
+        Axis::fourier(0.0, 1.0, 9).unwrap(),
+    ];
+    let report = measured(&model, &[("w", w), ("D", 0.1)], amplitude, axes);
+    let gain = 1.0 / (1.0 + w * w);
+    for (name, exact) in [
+        ("amplitude_x", amplitude * f64::sqrt(gain)),
+        ("amplification_x", gain),
+    ] {
+        let (found, error) = (report.measure(name), report.error_of(name).unwrap());
+        let off = (found.unwrap() - exact).abs();
         assert!(
-            (amplification / exact - 1.0).abs() < 2e-5,
-            "{amplitude}: {amplification}"
+            off <= error && error < 1e-4 * exact,
+            "{name}: {off:e} of {error:e}"
         );
     }
+    // A force that depends on the state has no amplitude of its own.
+    let model = forced("-x + 0.3 x sin(w t)");
+    let axes = vec![
+        Axis::uniform(-3.0, 3.0, 60).unwrap(),
+        Axis::fourier(0.0, 1.0, 6).unwrap(),
+    ];
+    let report = measured(&model, &[("w", w), ("D", 0.1)], amplitude, axes);
+    assert_eq!(report.measure("amplification_x"), None);
+    assert!(report.measure("amplitude_x").is_some());
 }
 
 #[test]

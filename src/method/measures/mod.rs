@@ -2,6 +2,7 @@
 
 mod balance;
 mod entropy;
+mod forcing;
 mod passage;
 mod rotation;
 mod slow_modes;
@@ -88,13 +89,14 @@ impl DerivedMeasure {
 }
 
 /// The columns of what a family itself asks for: passages, slow modes, spectra, and the exponent of a fixed point; and
-/// those of its angles.
+/// those of its angles, and of its answer to a forcing.
 pub(crate) fn columns_of_family(family: &Family) -> Vec<MeasureColumn> {
     let passages = passage_columns(family).into_iter();
     let asked = passages.chain(slow_modes::columns(family));
     let asked = asked.chain(spectra::columns(family));
     let columns = asked.chain(exponent_columns(family));
-    columns.chain(rotation::rotation_columns(family)).collect()
+    let columns = columns.chain(rotation::rotation_columns(family));
+    columns.chain(forcing::forcing_columns(family)).collect()
 }
 
 /// The measures that a subject asks for.

@@ -2,7 +2,7 @@
 
 use super::Axis;
 use crate::space::SpaceError;
-use crate::space::fourier::{cardinal, fourier_derivatives, fourier_integrals};
+use crate::space::fourier::{cardinal, fourier_derivatives, fourier_integrals, waves};
 use crate::space::hermite::{
     NORMAL_RANGE, gauss_hermite, hermite_integrals, hermite_values, normal_edges,
 };
@@ -132,6 +132,12 @@ impl Axis {
         self.closes
     }
 
+    /// Whether it is the phase of a periodic forcing, which runs from 0 to 1 in periods: an angle has its zero in the
+    /// middle of the turn.
+    pub(crate) fn is_phase(&self) -> bool {
+        self.series == Some(Series::Fourier) && self.from() == 0.0 && self.to() == 1.0
+    }
+
     /// Whether it carries a series in place of cells: see [`Axis::modes`], [`Axis::hermite`] and [`Axis::fourier`].
     pub fn is_modes(&self) -> bool {
         self.series.is_some()
@@ -210,8 +216,14 @@ impl Axis {
         }
     }
 
-    /// Of an axis of Legendre modes, the orthonormal polynomials √(2m + 1) P_m at its nodes: entry `node · count + m`.
+    /// Of an axis of Legendre modes, the orthonormal polynomials √(2m + 1) P_m at its nodes; of one that closes on
+    /// itself 1, √2 cos 2πs, √2 sin 2πs, √2 cos 4πs, …, s in turns: entry `node · count + m`.
     pub(crate) fn orthonormal_values(&self) -> Vec<f64> {
+        if self.is_closed() {
+            let turn = self.to() - self.from();
+            let of_node = |x: &f64| waves(self.count(), (x - self.from()) / turn);
+            return self.nodes.iter().flat_map(of_node).collect();
+        }
         let (middle, half) = (
             0.5 * (self.from() + self.to()),
             0.5 * (self.to() - self.from()),

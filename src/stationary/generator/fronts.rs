@@ -14,7 +14,7 @@ use faer::linalg::triangular_solve::{
 };
 use faer::{Accum, MatMut, MatRef, Par};
 
-use super::number::Number;
+use super::number::{Number, Wide};
 use super::symbolic::{Front, Symbolic};
 use super::updates::Updates;
 use crate::cancellation::{Cancellation, Cancelled};
@@ -52,14 +52,14 @@ pub(super) fn allocate<T: Number>(symbolic: &Symbolic) -> Factors<T> {
     let factor = |front: &Front| {
         let (k, m) = (front.node.own.len(), front.boundary);
         Factor {
-            upper: vec![T::from_rate(0.0); k * (k + m)],
-            lower: vec![T::from_rate(0.0); m * k],
+            upper: vec![T::from_real(0.0); k * (k + m)],
+            lower: vec![T::from_real(0.0); m * k],
             rows: vec![0; k],
         }
     };
     Factors {
         fronts: symbolic.fronts.iter().map(factor).collect(),
-        updates: vec![T::from_rate(0.0); symbolic.updates().total()],
+        updates: vec![T::from_real(0.0); symbolic.updates().total()],
     }
 }
 
@@ -71,7 +71,7 @@ pub(super) fn allocate<T: Number>(symbolic: &Symbolic) -> Factors<T> {
 /// [`Cancelled`].
 pub(super) fn factorise<T: Number>(
     symbolic: &Symbolic,
-    values: &[f64],
+    values: &[T::Wide],
     held: usize,
     factors: &mut Factors<T>,
     cancellation: &Cancellation,
@@ -90,16 +90,16 @@ pub(super) fn factorise<T: Number>(
 }
 
 /// What every front needs.
-struct Task<'a> {
+struct Task<'a, W> {
     symbolic: &'a Symbolic,
-    values: &'a [f64],
+    values: &'a [W],
     held: usize,
     cancellation: &'a Cancellation,
 }
 
-impl Task<'_> {
+impl<W: Wide> Task<'_, W> {
     /// Factorises a subtree (`factors` are those of its nodes); the m × m update of its top comes first in `updates`.
-    fn subtree<T: Number>(
+    fn subtree<T: Number<Wide = W>>(
         &self,
         top: usize,
         factors: &mut [Factor<T>],
@@ -122,7 +122,7 @@ impl Task<'_> {
         self.cancellation.check()?;
         self.assemble(front, factor);
         let (update, children) = updates.top(front.boundary);
-        update.fill(T::from_rate(0.0));
+        update.fill(T::from_real(0.0));
         if let Some([left, right]) = front.node.children {
             let (of_left, of_right) = children.split_at(fronts[left].updates.of_top);
             extend(&fronts[left], of_left, front, factor, update);
@@ -133,10 +133,10 @@ impl Task<'_> {
     }
 
     /// Puts the matrix's own entries into the front.
-    fn assemble<T: Number>(&self, front: &Front, factor: &mut Factor<T>) {
+    fn assemble<T: Number<Wide = W>>(&self, front: &Front, factor: &mut Factor<T>) {
         let (k, m) = (front.node.own.len(), front.boundary);
-        factor.upper.fill(T::from_rate(0.0));
-        factor.lower.fill(T::from_rate(0.0));
+        factor.upper.fill(T::from_real(0.0));
+        factor.lower.fill(T::from_real(0.0));
         for entry in &front.entries {
             let (row, column) = (entry.row as usize, entry.column as usize);
             // The diagonal grows by a rounding error, so that a closed set of cells that rounding separates
@@ -151,7 +151,7 @@ impl Task<'_> {
         }
         if front.node.own.contains(&self.held) {
             let held = self.held - front.node.own.start;
-            factor.upper[held * k + held] = T::from_rate(1.0);
+            factor.upper[held * k + held] = T::from_real(1.0);
         }
     }
 }
@@ -199,7 +199,7 @@ fn eliminate<T: Number>(
     cancellation: &Cancellation,
 ) {
     let (k, m) = (front.node.own.len(), front.boundary);
-    let minus = T::from_rate(-1.0);
+    let minus = T::from_real(-1.0);
     let upper = MatMut::from_column_major_slice_mut(&mut factor.upper, k, k + m);
     factorise_rows(upper, &mut factor.rows, cancellation);
     if m == 0 {
@@ -235,7 +235,7 @@ fn factorise_rows<T: Number>(
     cancellation: &Cancellation,
 ) {
     let (k, columns) = upper.shape();
-    let minus = T::from_rate(-1.0);
+    let minus = T::from_real(-1.0);
     for (place, row) in rows.iter_mut().enumerate() {
         *row = place as u32;
     }
@@ -291,12 +291,10 @@ fn drop_small<T: Number>(block: Block<'_, T>) {
     let Some(block) = block.try_as_col_major_mut() else {
         return;
     };
-    let zero = T::from_rate(0.0);
     for column in block.col_iter_mut() {
         for entry in column.iter_mut() {
             // Selects rather than branches.
-            let small = *entry < T::FLOOR && *entry > -T::FLOOR;
-            *entry = if small { zero } else { *entry };
+            *entry = entry.floored();
         }
     }
 }

@@ -13,6 +13,7 @@
 //! | `updates` | where fronts leave what they add to their parents' |
 //! | `narrowing` | a matrix of reach one that stands in where the factors would not fit |
 //! | `modewise` | factors of every mode by itself, lower ones first, where there are many |
+//! | `harmonics` | factors of every harmonic of a phase by itself |
 //! | `preconditioner` | one of these factorisations, with one cell held |
 //! | `balance` | residual and Jacobian of the (quasi-)steady state |
 //! | `passes` | passes through the factors, which two iterations may share |
@@ -29,6 +30,7 @@ mod absorbing;
 mod balance;
 mod dissection;
 mod fronts;
+mod harmonics;
 mod krylov;
 mod memory;
 mod modewise;

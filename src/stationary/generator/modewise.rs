@@ -21,7 +21,7 @@ use super::symbolic::Symbolic;
 use super::triangular::{self, transposed::solve_transposed};
 use crate::cancellation::{Cancellation, Cancelled};
 use layout::blocks;
-pub(super) use layout::{Layout, others};
+pub(super) use layout::{Layout, has_phase, others};
 
 /// Share of its largest mass that the stand-in's own steady state must have in the held cell: with less, another cell
 /// is held.

@@ -6,7 +6,8 @@ use sprs::CsMat;
 
 use super::RateError;
 use super::dissection::Grid;
-use super::modewise::{Layout, ModeFactors, others};
+use super::harmonics::HarmonicFactors;
+use super::modewise::{Layout, ModeFactors, has_phase, others};
 use super::narrowing::narrow;
 use super::prediction::{Prediction, predict};
 use crate::cancellation::Cancellation;
@@ -23,6 +24,10 @@ pub(super) const LARGE: u64 = 16 << 20;
 /// How many times the work of factors mode by mode those of all modes together may take: these need fewer iterations,
 /// and warm starts last longer with them. It is about four for two modes, and rises with the square of their number.
 const MUCH_MORE: f64 = 4.0;
+
+/// Operations of factors of all nodes of a phase together that are few, whatever its harmonics one by one would take:
+/// a fraction of a second on two cores, and no forcing is too strong for them.
+const FEW_OPERATIONS: f64 = 1e10;
 
 /// Copies of a matrix that are made on the way to its factors: scaled, in the order of elimination, by fronts.
 const COPIES: u64 = 4;
@@ -55,7 +60,8 @@ pub enum RateMethod {
     NarrowLu,
     /// The same in single precision.
     NarrowLuSingle,
-    /// LU of every Legendre mode by itself, in single precision, lower modes first: for many modes.
+    /// LU of every Legendre mode by itself, in single precision, lower modes first: for many modes. Of a phase, LU of
+    /// every harmonic by itself.
     Modewise,
 }
 
@@ -137,7 +143,8 @@ fn grid(space: &CellSpace, structure: &Structure, method: RateMethod) -> Grid {
     Grid::new(&space.shape(), &reach, LEAF).fold_at(structure.folded)
 }
 
-/// The grid of the places at which modes stand, that of all other axes; `None` where there are no Legendre modes.
+/// The grid of the places at which modes stand that are taken one by one, that of all other axes; `None` where there
+/// are none.
 fn grid_of_places(space: &CellSpace, structure: &Structure) -> Option<Grid> {
     let (places, kept) = others(space)?;
     let reach = kept.iter().map(|&axis| structure.reach.get(axis).copied());
@@ -150,7 +157,7 @@ fn grid_of_places(space: &CellSpace, structure: &Structure) -> Option<Grid> {
     Some(grid(&places, &of_places, RateMethod::Modewise))
 }
 
-/// Predicts what factors of every mode by itself take; `None` where there are no Legendre modes.
+/// Predicts what factors of every mode by itself take; `None` where there are no modes that can be taken so.
 fn predict_modewise(space: &CellSpace, structure: &Structure) -> Option<Estimate> {
     let method = RateMethod::Modewise;
     let prediction = predict(&grid_of_places(space, structure)?);
@@ -161,11 +168,16 @@ fn predict_modewise(space: &CellSpace, structure: &Structure) -> Option<Estimate
     let number = method.bytes_per_number() as f64;
     let entries = modes * prediction.factor_entries + below;
     let change = places * modes.powi(2);
+    // A harmonic is a complex number for two modes, and a product of two of those four products.
+    let factorised = match has_phase(space) {
+        true => 2.0 * modes - 1.0,
+        false => modes,
+    };
     Some(Estimate {
         method,
         factor_bytes: (entries * number) as u64,
         peak_bytes: (modes * prediction.bytes(method.bytes_per_number()) + below * number) as u64,
-        operations: modes * prediction.operations + 4.0 * change * modes,
+        operations: factorised * prediction.operations + 4.0 * change * modes,
         iteration_operations: 2.0 * entries + 4.0 * change,
     })
 }
@@ -215,7 +227,13 @@ pub(super) fn estimate_of(
         (Some(RateMethod::Modewise), Some(plan)) => return Ok(plan),
         (None, Some(plan)) => {
             let whole = predict_method(space, structure, RateMethod::LuSingle);
-            if !fits(&whole) || whole.operations > MUCH_MORE * plan.operations {
+            let few = if has_phase(space) {
+                FEW_OPERATIONS
+            } else {
+                0.0
+            };
+            let is_much = whole.operations > few.max(MUCH_MORE * plan.operations);
+            if !fits(&whole) || is_much {
                 return Ok(plan);
             }
         }
@@ -251,6 +269,7 @@ pub(super) struct Preconditioner {
 enum Kept {
     Whole(WholeFactors),
     Modes(Box<ModeFactors>),
+    Harmonics(Box<HarmonicFactors>),
 }
 
 impl Preconditioner {
@@ -276,6 +295,13 @@ impl Preconditioner {
             && let Some(grid) = grid_of_places(space, structure)
             && let Some(layout) = Layout::new(space, grid)
         {
+            if has_phase(space) {
+                let factors = HarmonicFactors::new(layout, matrix, held, cancellation)?;
+                return Ok(Self {
+                    held: factors.held,
+                    factors: Kept::Harmonics(Box::new(factors)),
+                });
+            }
             let factors = ModeFactors::new(layout, matrix, held, cancellation)?;
             return Ok(Self {
                 held: factors.held,
@@ -284,7 +310,7 @@ impl Preconditioner {
         }
         let old = old.and_then(|old| match old.factors {
             Kept::Whole(factors) => Some(factors),
-            Kept::Modes(_) => None,
+            Kept::Modes(_) | Kept::Harmonics(_) => None,
         });
         let grid = || grid(space, structure, method);
         let narrowed = method.is_narrow().then(|| narrow(space, matrix));
@@ -301,6 +327,7 @@ impl Preconditioner {
         match &self.factors {
             Kept::Whole(factors) => factors.apply(residuals, self.held),
             Kept::Modes(factors) => factors.apply(residuals),
+            Kept::Harmonics(factors) => factors.apply(residuals),
         }
     }
 
@@ -315,6 +342,7 @@ impl Preconditioner {
         match &self.factors {
             Kept::Whole(factors) => factors.apply_transposed(residual, self.held),
             Kept::Modes(factors) => factors.apply_transposed(residual),
+            Kept::Harmonics(factors) => factors.apply_transposed(residual),
         }
     }
 
@@ -323,6 +351,7 @@ impl Preconditioner {
         match &self.factors {
             Kept::Whole(factors) => factors.bytes(),
             Kept::Modes(factors) => factors.bytes(),
+            Kept::Harmonics(factors) => factors.bytes(),
         }
     }
 }

@@ -24,7 +24,7 @@ const LARGE_PRODUCT: usize = 1 << 17;
 pub(super) fn solve<T: Number, const R: usize>(
     symbolic: &Symbolic,
     factors: &[Factor<T>],
-    mut x: [&mut [f64]; R],
+    mut x: [&mut [T::Wide]; R],
 ) {
     if let Some(root) = symbolic.fronts.len().checked_sub(1) {
         forward(symbolic, factors, root, x.each_mut().map(|x| &mut **x));
@@ -42,8 +42,8 @@ fn both<A: Send, B: Send>(
 }
 
 /// Cuts each vector at the same place.
-fn cut_each<const R: usize>(x: [&mut [f64]; R], at: usize) -> ([&mut [f64]; R], [&mut [f64]; R]) {
-    let mut after: [&mut [f64]; R] = from_fn(|_| Default::default());
+fn cut_each<W, const R: usize>(x: [&mut [W]; R], at: usize) -> ([&mut [W]; R], [&mut [W]; R]) {
+    let mut after: [&mut [W]; R] = from_fn(|_| Default::default());
     let mut places = after.iter_mut();
     let before = x.map(|x| {
         let (head, tail) = x.split_at_mut(at);
@@ -60,12 +60,12 @@ fn forward<T: Number, const R: usize>(
     symbolic: &Symbolic,
     factors: &[Factor<T>],
     top: usize,
-    x: [&mut [f64]; R],
-) -> [Vec<f64>; R] {
+    x: [&mut [T::Wide]; R],
+) -> [Vec<T::Wide>; R] {
     let front = &symbolic.fronts[top];
     let (k, m) = (front.node.own.len(), front.boundary);
     let below = x.first().map_or(0, |x| x.len() - k);
-    let mut local: [Vec<f64>; R] = from_fn(|_| vec![0.0; k + m]);
+    let mut local: [Vec<T::Wide>; R] = from_fn(|_| vec![T::Wide::default(); k + m]);
     let (unknowns, mut own) = cut_each(x, below);
     if let Some([left, right]) = front.node.children {
         let cut = symbolic.first_unknown(right) - symbolic.first_unknown(top);
@@ -85,7 +85,7 @@ fn forward<T: Number, const R: usize>(
     }
     let factor = &factors[top];
     for (own, local) in own.iter_mut().zip(&local) {
-        let summed: Vec<f64> = own.iter().zip(local).map(|(a, b)| a + b).collect();
+        let summed: Vec<T::Wide> = own.iter().zip(local).map(|(&a, &b)| a + b).collect();
         for (slot, &row) in own.iter_mut().zip(&factor.rows) {
             *slot = summed[row as usize];
         }
@@ -116,17 +116,17 @@ fn backward<T: Number, const R: usize>(
     symbolic: &Symbolic,
     factors: &[Factor<T>],
     top: usize,
-    x: [&mut [f64]; R],
-    around: [&[f64]; R],
+    x: [&mut [T::Wide]; R],
+    around: [&[T::Wide]; R],
 ) {
     let front = &symbolic.fronts[top];
     let factor = &factors[top];
     let k = front.node.own.len();
     let below = x.first().map_or(0, |x| x.len() - k);
     let (unknowns, mut own) = cut_each(x, below);
-    let mut local: [Vec<f64>; R] = around.map(|around| {
+    let mut local: [Vec<T::Wide>; R] = around.map(|around| {
         let mut local = Vec::with_capacity(k + front.boundary);
-        local.resize(k, 0.0);
+        local.resize(k, T::Wide::default());
         local.extend(front.in_parent.iter().map(|&place| around[place as usize]));
         local
     });
@@ -164,7 +164,7 @@ fn backward<T: Number, const R: usize>(
 }
 
 /// y ← y - a x for one column a.
-fn subtract_one<T: Number>(column: &[T], x: f64, y: &mut [f64]) {
+fn subtract_one<T: Number>(column: &[T], x: T::Wide, y: &mut [T::Wide]) {
     for (slot, &entry) in y.iter_mut().zip(column) {
         *slot -= entry.wide() * x;
     }
@@ -175,8 +175,8 @@ fn subtract_one<T: Number>(column: &[T], x: f64, y: &mut [f64]) {
 fn subtract_product<T: Number, const R: usize>(
     matrix: &[T],
     stride: usize,
-    x: [&[f64]; R],
-    y: [&mut [f64]; R],
+    x: [&[T::Wide]; R],
+    y: [&mut [T::Wide]; R],
 ) {
     let (Some(rows), Some(columns)) = (y.first().map(|y| y.len()), x.first().map(|x| x.len()))
     else {
@@ -200,8 +200,8 @@ fn subtract_product<T: Number, const R: usize>(
 fn columns_in_turn<T: Number, const R: usize>(
     matrix: &[T],
     stride: usize,
-    x: [&[f64]; R],
-    mut y: [&mut [f64]; R],
+    x: [&[T::Wide]; R],
+    mut y: [&mut [T::Wide]; R],
 ) {
     let (Some(rows), Some(columns)) = (y.first().map(|y| y.len()), x.first().map(|x| x.len()))
     else {

@@ -1,4 +1,7 @@
 //! Cells as places and nodes, masses at nodes as moments and back, and the generator in that basis.
+//!
+//! Nodes are those of the axes whose modes are taken one by one: of Legendre modes, or, where there is one, of the
+//! harmonics of the phase of a forcing alone.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
@@ -8,8 +11,8 @@ use sprs::CsMat;
 use crate::space::{Axis, CellSpace, Series};
 use crate::stationary::generator::dissection::Grid;
 
-/// A grid whose cells are places on the axes without Legendre modes, times nodes of those with them. Moments are laid
-/// out `place · modes + mode`, of orthonormal polynomials.
+/// A grid whose cells are places on the axes whose modes are not taken one by one, times nodes of those whose modes
+/// are. Moments are laid out `place · modes + mode`, of orthonormal polynomials, trigonometric ones along a phase.
 #[derive(Debug, Clone)]
 pub(in crate::stationary::generator) struct Layout {
     grid: Grid,
@@ -24,18 +27,30 @@ pub(in crate::stationary::generator) struct Layout {
     weighted: Vec<f64>,
 }
 
-/// Whether an axis is carried by modes that take from lower ones only.
-fn is_legendre(axis: &Axis) -> bool {
-    axis.series() == Some(Series::Legendre)
+/// Whether a space has the phase of a forcing.
+pub(in crate::stationary::generator) fn has_phase(space: &CellSpace) -> bool {
+    space.axes().iter().any(Axis::is_phase)
 }
 
-/// The axes without Legendre modes as a space of their own, with their numbers; `None` where all or none have them.
+/// Whether the modes of each axis are taken one by one: those of a phase, of which the forcing alone takes to others;
+/// or else those that take from lower ones only.
+fn taken_apart(space: &CellSpace) -> Vec<bool> {
+    let has_phase = has_phase(space);
+    let is_apart = |axis: &Axis| match has_phase {
+        true => axis.is_phase(),
+        false => axis.series() == Some(Series::Legendre),
+    };
+    space.axes().iter().map(is_apart).collect()
+}
+
+/// The axes whose modes are not taken one by one as a space of their own, with their numbers; `None` where that is all
+/// of them or none.
 pub(in crate::stationary::generator) fn others(
     space: &CellSpace,
 ) -> Option<(CellSpace, Vec<usize>)> {
-    let axes = space.axes().iter().enumerate();
-    let kept: Vec<usize> = axes
-        .filter(|(_, axis)| !is_legendre(axis))
+    let apart = taken_apart(space).into_iter().enumerate();
+    let kept: Vec<usize> = apart
+        .filter(|(_, is_apart)| !is_apart)
         .map(|(number, _)| number)
         .collect();
     if kept.len() == space.dimension() {
@@ -46,13 +61,14 @@ pub(in crate::stationary::generator) fn others(
 }
 
 impl Layout {
-    /// Of a space; `grid` is that of the places. `None` without Legendre modes, or without any other axis.
+    /// Of a space; `grid` is that of the places. `None` without modes that are taken one by one, or without any other
+    /// axis.
     pub(in crate::stationary::generator) fn new(space: &CellSpace, grid: Grid) -> Option<Self> {
         let (places, kept) = others(space)?;
         let (mut modes, mut values, mut weights) = (1, vec![1.0], vec![1.0]);
         let mut carried = Vec::new();
         for (number, axis) in space.axes().iter().enumerate() {
-            if !is_legendre(axis) {
+            if kept.contains(&number) {
                 continue;
             }
             let (count, along) = (axis.count(), axis.orthonormal_values());
@@ -97,32 +113,51 @@ impl Layout {
     }
 
     /// The grid of the places.
-    pub(super) fn grid(&self) -> &Grid {
+    pub(in crate::stationary::generator) fn grid(&self) -> &Grid {
         &self.grid
     }
 
     /// Number of places.
-    pub(super) fn places(&self) -> usize {
+    pub(in crate::stationary::generator) fn places(&self) -> usize {
         self.cells.len() / self.modes
     }
 
     /// Number of modes, of all axes that have them together.
-    pub(super) fn modes(&self) -> usize {
+    pub(in crate::stationary::generator) fn modes(&self) -> usize {
         self.modes
     }
 
+    /// The cells with the nodes of a place.
+    pub(in crate::stationary::generator) fn cells_at(&self, place: usize) -> &[u32] {
+        &self.cells[place * self.modes..][..self.modes]
+    }
+
+    /// Place and node of a cell.
+    pub(in crate::stationary::generator) fn split(&self, cell: usize) -> (usize, usize) {
+        let (place, node) = self.split[cell];
+        (place as usize, node as usize)
+    }
+
     /// The place of a cell.
-    pub(super) fn place(&self, cell: usize) -> usize {
+    pub(in crate::stationary::generator) fn place(&self, cell: usize) -> usize {
         self.split[cell].0 as usize
     }
 
     /// Moments of masses of cells, with another number in place of one of them.
-    pub(super) fn moments(&self, masses: &[f64], given: (usize, f64)) -> Vec<f64> {
+    pub(in crate::stationary::generator) fn moments(
+        &self,
+        masses: &[f64],
+        given: (usize, f64),
+    ) -> Vec<f64> {
         self.sum_over_nodes(&self.values, masses, given)
     }
 
     /// The transpose of [`Layout::masses`], with another number in place of one of the cells'.
-    pub(super) fn moments_by_weights(&self, values: &[f64], given: (usize, f64)) -> Vec<f64> {
+    pub(in crate::stationary::generator) fn moments_by_weights(
+        &self,
+        values: &[f64],
+        given: (usize, f64),
+    ) -> Vec<f64> {
         self.sum_over_nodes(&self.weighted, values, given)
     }
 
@@ -144,12 +179,12 @@ impl Layout {
     }
 
     /// Masses of cells with these moments.
-    pub(super) fn masses(&self, moments: &[f64]) -> Vec<f64> {
+    pub(in crate::stationary::generator) fn masses(&self, moments: &[f64]) -> Vec<f64> {
         self.at_nodes(&self.weighted, moments)
     }
 
     /// The transpose of [`Layout::moments`].
-    pub(super) fn values_of(&self, moments: &[f64]) -> Vec<f64> {
+    pub(in crate::stationary::generator) fn values_of(&self, moments: &[f64]) -> Vec<f64> {
         self.at_nodes(&self.values, moments)
     }
 

@@ -3,6 +3,7 @@
 use sprs::CsMat;
 
 use super::{DirectSolver, shape};
+use crate::stationary::generator::modewise::has_phase;
 use crate::stationary::generator::preconditioner::{
     Estimate, Preconditioner, Structure, estimate_of,
 };
@@ -16,6 +17,10 @@ const RENEWAL: (f64, f64) = (12.0, 0.027);
 /// Iterations of a cold solve with factors mode by mode that tell that they do not suit an equation: laws whose rate is
 /// a polynomial of the first degree take 10 to 45 (`docs/accuracy.md`).
 const PATIENCE: usize = 90;
+
+/// The same of factors harmonic by harmonic, in place of which the others take a hundred times the work: an oscillator
+/// driven at its resonance to six deviations of its density takes 90 to 120.
+const PATIENCE_WITH_A_PHASE: usize = 240;
 
 impl DirectSolver {
     /// Whether iterating with the factorisation at hand has come to cost more than a new one would.
@@ -71,10 +76,10 @@ impl DirectSolver {
     /// Iterations after which factors mode by mode are given up where others could be had.
     pub(super) fn patience(&self, plan: &Estimate) -> usize {
         let is_modewise = plan.method == RateMethod::Modewise;
-        if is_modewise && self.more_demanding(plan).is_some() {
-            PATIENCE
-        } else {
-            usize::MAX
+        match is_modewise && self.more_demanding(plan).is_some() {
+            true if has_phase(&self.space) => PATIENCE_WITH_A_PHASE,
+            true => PATIENCE,
+            false => usize::MAX,
         }
     }
 

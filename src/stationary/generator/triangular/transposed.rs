@@ -11,7 +11,7 @@ use crate::stationary::generator::symbolic::Symbolic;
 pub(in crate::stationary::generator) fn solve_transposed<T: Number>(
     symbolic: &Symbolic,
     factors: &[Factor<T>],
-    x: &mut [f64],
+    x: &mut [T::Wide],
 ) {
     if let Some(root) = symbolic.fronts.len().checked_sub(1) {
         upward(symbolic, factors, root, x);
@@ -24,13 +24,13 @@ fn upward<T: Number>(
     symbolic: &Symbolic,
     factors: &[Factor<T>],
     top: usize,
-    x: &mut [f64],
-) -> Vec<f64> {
+    x: &mut [T::Wide],
+) -> Vec<T::Wide> {
     let front = &symbolic.fronts[top];
     let (k, m) = (front.node.own.len(), front.boundary);
     let below = x.len() - k;
     let (unknowns, own) = x.split_at_mut(below);
-    let mut local = vec![0.0; k + m];
+    let mut local = vec![T::Wide::default(); k + m];
     if let Some([left, right]) = front.node.children {
         let cut = symbolic.first_unknown(right) - symbolic.first_unknown(top);
         let (a, b) = unknowns.split_at_mut(cut);
@@ -66,15 +66,15 @@ fn downward<T: Number>(
     symbolic: &Symbolic,
     factors: &[Factor<T>],
     top: usize,
-    x: &mut [f64],
-    around: &[f64],
+    x: &mut [T::Wide],
+    around: &[T::Wide],
 ) {
     let front = &symbolic.fronts[top];
     let (k, m) = (front.node.own.len(), front.boundary);
     let factor = &factors[top];
     let below = x.len() - k;
     let (unknowns, own) = x.split_at_mut(below);
-    let mut local = vec![0.0; k];
+    let mut local = vec![T::Wide::default(); k];
     local.extend(front.in_parent.iter().map(|&place| around[place as usize]));
     for column in (0..k).rev() {
         let lower = &factor.upper[column * k + column + 1..(column + 1) * k];
@@ -97,15 +97,15 @@ fn downward<T: Number>(
 }
 
 /// Σ a b, in a fixed order.
-fn product<T: Number>(a: &[T], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 8];
+fn product<T: Number>(a: &[T], b: &[T::Wide]) -> T::Wide {
+    let mut sums = [T::Wide::default(); 8];
     let (left, right) = (a.chunks_exact(8), b.chunks_exact(8));
     let rest = left.remainder().iter().zip(right.remainder());
-    let tail: f64 = rest.map(|(a, b)| a.wide() * b).sum();
+    let tail: T::Wide = rest.map(|(a, &b)| a.wide() * b).sum();
     for (a, b) in left.zip(right) {
         for lane in 0..8 {
             sums[lane] += a[lane].wide() * b[lane];
         }
     }
-    sums.iter().sum::<f64>() + tail
+    sums.into_iter().sum::<T::Wide>() + tail
 }

@@ -1,0 +1,78 @@
+//! Factors of one matrix between places, real or complex, and solves with them.
+
+use crate::cancellation::{Cancellation, Cancelled};
+use crate::stationary::generator::fronts::{Factor, allocate, factorise};
+use crate::stationary::generator::number::{Number, Wide};
+use crate::stationary::generator::symbolic::Symbolic;
+use crate::stationary::generator::triangular::{self, transposed::solve_transposed};
+
+/// Factors of a matrix over `scale`.
+pub(super) struct Scaled<T> {
+    fronts: Vec<Factor<T>>,
+    scale: f64,
+}
+
+/// Factors of rates between places, with the place at a position in the order of elimination held.
+pub(super) fn factors<T: Number>(
+    symbolic: &Symbolic,
+    mut rates: Vec<T::Wide>,
+    held: Option<usize>,
+    cancellation: &Cancellation,
+) -> Result<Scaled<T>, Cancelled> {
+    let largest = rates
+        .iter()
+        .fold(0.0_f64, |most, rate| most.max(rate.size()));
+    let scale = match largest > 0.0 && largest.is_finite() {
+        true => largest.log2().round().exp2(),
+        false => 1.0,
+    };
+    rates
+        .iter_mut()
+        .for_each(|rate| *rate = *rate * scale.recip());
+    let mut factors = allocate(symbolic);
+    let held = held.unwrap_or(usize::MAX);
+    factorise(symbolic, &rates, held, &mut factors, cancellation)?;
+    // The room for updates is given back: there are as many factors as harmonics.
+    let fronts = factors.fronts;
+    Ok(Scaled { fronts, scale })
+}
+
+impl<T: Number> Scaled<T> {
+    /// Solves in place, place by place; the place at `held` in the order of elimination is zero.
+    pub(super) fn solve<const R: usize>(
+        &self,
+        symbolic: &Symbolic,
+        held: Option<usize>,
+        vectors: &mut [Vec<T::Wide>; R],
+    ) {
+        let mut ordered = vectors.each_ref().map(|vector| in_order(symbolic, vector));
+        if let Some(held) = held {
+            let zero = |vector: &mut Vec<T::Wide>| vector[held] = T::Wide::default();
+            ordered.iter_mut().for_each(zero);
+        }
+        let each = ordered.each_mut().map(Vec::as_mut_slice);
+        triangular::solve(symbolic, &self.fronts, each);
+        for (vector, ordered) in vectors.iter_mut().zip(&ordered) {
+            self.put_back(symbolic, ordered, vector);
+        }
+    }
+
+    /// The same with the transposed factors, and no place held.
+    pub(super) fn solve_transposed(&self, symbolic: &Symbolic, vector: &mut [T::Wide]) {
+        let mut ordered = in_order(symbolic, vector);
+        solve_transposed(symbolic, &self.fronts, &mut ordered);
+        self.put_back(symbolic, &ordered, vector);
+    }
+
+    fn put_back(&self, symbolic: &Symbolic, ordered: &[T::Wide], vector: &mut [T::Wide]) {
+        for (&place, &value) in symbolic.order.iter().zip(ordered) {
+            vector[place as usize] = value * self.scale.recip();
+        }
+    }
+}
+
+/// Numbers of places in the order of elimination.
+fn in_order<W: Copy>(symbolic: &Symbolic, vector: &[W]) -> Vec<W> {
+    let order = symbolic.order.iter();
+    order.map(|&place| vector[place as usize]).collect()
+}
