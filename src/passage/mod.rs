@@ -41,11 +41,13 @@
 //! | masses of a density in a region | `spread.rs` |
 //! | numbers on one grid | `solve.rs` |
 //! | the rate, from the vectors of moments | `rate.rs` |
+//! | its density, from one grid to another | `lasting.rs` |
 //! | probabilities at times, and quantiles | `survival.rs` |
 //! | numbers with errors | `timed.rs` |
 
 mod cells;
 mod density_start;
+mod lasting;
 mod rate;
 mod solve;
 mod spread;

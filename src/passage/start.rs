@@ -145,7 +145,7 @@ pub(super) fn at_nodes_of(
 }
 
 /// The place of a coordinate: of its node on an axis of modes.
-fn place_of(axis: &Axis, x: f64) -> f64 {
+pub(super) fn place_of(axis: &Axis, x: f64) -> f64 {
     if axis.is_modes() {
         let node = axis.nodes().partition_point(|&node| node < x);
         return node as f64 + 0.5;

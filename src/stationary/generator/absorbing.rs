@@ -7,13 +7,14 @@
 //! small difference of large numbers, whether ends are rare or not.
 //!
 //! What another scheme Q' changes follows to first order from both sides, without another factorisation: with w the
-//! expected times to the end from each cell, the mean time changes by w·(Q' - Q) z.
+//! expected times to the end from each cell, the mean time changes by w·(Q' - Q) z. What is left of either equation makes
+//! up for itself the same way.
 
 use sprs::CsMat;
 
 use super::balance::{add_product, dot};
 use super::narrowing;
-use super::newton::refined;
+use super::newton::{FirstPass, refined};
 use super::passes::{Seat, run_alone};
 use super::preconditioner::{LARGE, Preconditioner, Structure, estimate_of};
 use super::solver::{largest, shape};
@@ -33,6 +34,8 @@ pub(crate) struct AbsorbingSolver<'s> {
     space: &'s CellSpace,
     options: RateOptions,
     preconditioner: Option<Preconditioner>,
+    /// What the first pass through the factors did.
+    first: Option<FirstPass>,
     /// Factorisations that were made, and passes through them.
     pub(crate) work: AbsorbingWork,
     cancellation: Cancellation,
@@ -79,6 +82,25 @@ impl Expected {
         &self.beside
     }
 
+    /// w·Q z for a generator that is given by its rates (row, column, rate), any number of them for a place, and the
+    /// rates of its ends.
+    pub(crate) fn through(
+        &self,
+        rates: &[(usize, usize, f64)],
+        ends: &[f64],
+        times: &[f64],
+    ) -> f64 {
+        // Columns sum to minus the ends, so that the held cell's value meets what ends alone.
+        let within = rates.iter();
+        let within = within.map(|&(row, column, rate)| self.beside[row] * rate * times[column]);
+        within.sum::<f64>() - self.at_held * dot(ends, times)
+    }
+
+    /// The sum of what is expected over a start.
+    pub(crate) fn over(&self, start: &[f64]) -> f64 {
+        dot(&self.beside, start) + self.at_held * start.iter().sum::<f64>()
+    }
+
     /// What two starts, each with Σ = 1, differ by.
     pub(crate) fn difference(&self, one: &[f64], other: &[f64]) -> f64 {
         dot(&self.beside, one) - dot(&self.beside, other)
@@ -86,21 +108,16 @@ impl Expected {
 }
 
 impl Absorbing<'_> {
-    /// w·(Q' - Q) z for another matrix of the same pattern or not, with the rates of its ends.
-    pub(crate) fn change(
-        &self,
-        (matrix, ends): (&CsMat<f64>, &[f64]),
-        expected: &Expected,
-        times: &[f64],
-    ) -> f64 {
-        // Columns sum to minus the ends, so that the held cell's value meets what ends alone.
-        let within = |matrix: &CsMat<f64>| {
-            let mut out = vec![0.0; times.len()];
-            add_product(matrix, times, &mut out);
-            dot(&out, &expected.beside)
-        };
-        let out = dot(ends, times) - dot(self.ends, times);
-        within(matrix) - within(self.matrix) - expected.at_held * out
+    /// Q z.
+    pub(crate) fn balance(&self, times: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; times.len()];
+        add_product(self.matrix, times, &mut out);
+        out
+    }
+
+    /// w·Q z, with the product Q z at hand.
+    pub(crate) fn of_balance(&self, balance: &[f64], expected: &Expected, times: &[f64]) -> f64 {
+        dot(balance, &expected.beside) - expected.at_held * dot(self.ends, times)
     }
 }
 
@@ -115,6 +132,7 @@ impl<'s> AbsorbingSolver<'s> {
             space,
             options,
             preconditioner: None,
+            first: None,
             work: AbsorbingWork::default(),
             cancellation: cancellation.clone(),
         }
@@ -197,6 +215,7 @@ impl<'s> AbsorbingSolver<'s> {
         self.work.factorisations += 1;
         let held = new.held;
         self.preconditioner = Some(new);
+        self.first = None;
         Ok(held)
     }
 
@@ -277,6 +296,7 @@ impl<'s> AbsorbingSolver<'s> {
         };
         let seat = Seat::default();
         let effort = (self.options.tolerance, self.options.max_iterations);
+        let source = (source, self.first);
         let work = refined(&seat, &operator, source, effort, &self.cancellation);
         let apply = |rest: &[f64]| {
             if is_transposed {
@@ -286,9 +306,10 @@ impl<'s> AbsorbingSolver<'s> {
             }
         };
         let found = run_alone(apply, &seat, work)?;
-        let (solution, used) = found.ok_or(RateError::Sensitivity)?;
-        self.work.passes += used;
-        Ok(solution)
+        let found = found.ok_or(RateError::Sensitivity)?;
+        self.work.passes += found.used;
+        self.first = self.first.or(found.first);
+        Ok(found.solution)
     }
 }
 
