@@ -18,6 +18,9 @@ use crate::space::CellSpace;
 use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, Expected, RateOptions};
 use crate::system::{Enclosed, System};
 
+/// Relative change of a rate by turning its density once toward that of the grid, at which it stands.
+const STANDS: f64 = 1e-5;
+
 /// Numbers of a passage: mean, standard deviation, the rate of the quasi-stationary density; then the probabilities at
 /// times and the quantiles that are asked for.
 pub(super) struct Numbers {
@@ -137,7 +140,9 @@ impl Question<'_> {
             }
             Start::Density(_) => {
                 let spread = (self.space, spread.ok_or(PassageError::NoDensity)?);
+                let levels = self.passage.start_levels(self.space)?;
                 let region = |state: &[f64]| self.passage.start_level(state);
+                let region = (region, levels.as_slice());
                 add_density((space, kept), spread, region, nodes, &mut weights)
             }
         };
@@ -180,22 +185,40 @@ fn moments(
         * (dot(weights, &second)
             + left_of(&first, &expected, &second, &of_second)
             + left_of(start, &again, &first, &of_first));
-    let begun = begun.filter(|begun| dot(begun, begun) > 0.0);
-    let (found, lasting) = slowest(begun.unwrap_or(&second), |vector| solver.times(&stage, vector))?;
     let scaled = again.values();
     let scaled: Vec<f64> = scaled.iter().map(|value| value / mean.powi(2)).collect();
     let left = solver.expected(&stage, &scaled)?;
-    let overlap = left.over(&lasting);
-    let of_lasting = stage.balance(&lasting);
-    let quotient = -stage.of_balance(&of_lasting, &left, &lasting) / overlap;
-    let rate = match quotient > 0.0 && quotient.is_finite() {
-        true => quotient,
-        false => found,
+    let quotient = |vector: &[f64]| {
+        let of_vector = stage.of_balance(&stage.balance(vector), &left, vector);
+        -of_vector / left.over(vector)
+    };
+    // A density from another grid is turned once toward this grid's, which does where the quotient stands by then.
+    let begun = begun.filter(|begun| dot(begun, begun) > 0.0);
+    let turned = match begun {
+        Some(begun) => Some((quotient(begun), solver.times(&stage, begun)?)),
+        None => None,
+    };
+    let stands = turned.as_ref().is_some_and(|(before, vector)| {
+        let rate = quotient(vector);
+        (rate - before).abs() <= STANDS * rate
+    });
+    let (found, lasting) = match turned {
+        Some((_, vector)) if stands => (0.0, vector),
+        turned => {
+            let from = turned.map_or_else(|| second.clone(), |(_, vector)| vector);
+            slowest(&from, |vector| solver.times(&stage, vector))?
+        }
+    };
+    let (overlap, of_lasting) = (left.over(&lasting), stage.balance(&lasting));
+    let rate = match quotient(&lasting) {
+        quotient if quotient > 0.0 && quotient.is_finite() => quotient,
+        _ => found,
     };
     // Of mean, mean square and rate, by another generator.
     let changes = |other: &AbsorbingGenerator| -> [f64; 3] {
         let change = |expected: &Expected, times: &[f64], balance: &[f64]| {
-            expected.through(&other.rates, &other.ends, times) - stage.of_balance(balance, expected, times)
+            expected.through(&other.rates, &other.ends, times)
+                - stage.of_balance(balance, expected, times)
         };
         [
             change(&expected, &first, &of_first),

@@ -207,9 +207,7 @@ impl ReducedModel {
         Some(Self {
             rates,
             starts: [inverse.solve(&tested[0])?, inverse.solve(&tested[1])?],
-            weights: DVector::from_fn(size, |column, _| {
-                dot(&columns[column], weights)
-            }),
+            weights: DVector::from_fn(size, |column, _| dot(&columns[column], weights)),
         })
     }
 

@@ -13,7 +13,7 @@ use crate::system::{PassageQuestion, System};
 
 /// Error at which times stop to be iterated, relative to their sum. Numbers have its square: they are put right by what
 /// equations from both sides leave.
-const TOLERANCE: f64 = 1e-5;
+const TOLERANCE: f64 = 1e-4;
 
 /// Adds the numbers of all passages at a value to a report, with findings where there are none. `density` is
 /// the steady state.

@@ -9,7 +9,7 @@ use super::passes::Seat;
 use crate::cancellation::{Cancellation, Cancelled};
 
 /// How much worse than for one source a first pass may be for another that leaves the same residual.
-const OTHER_SOURCES: f64 = 100.0;
+const OTHER_SOURCES: f64 = 10.0;
 /// Contraction per iteration below which plain refinement needs no GMRES.
 const FAST: f64 = 0.1;
 /// Least reduction asked of one run of GMRES: beyond, rounding of its basis shows.
@@ -220,6 +220,13 @@ pub(super) async fn refined(
         used += 1;
         let size = norm(&correction);
         let contraction = size / before;
+        if used == 2 && std::env::var("PW").is_ok() {
+            use std::io::Write as _;
+            let _ = writeln!(
+                std::io::stderr(),
+                "contraction {contraction:e} left {left:e}"
+            );
+        }
         first = first.or(Some(FirstPass { contraction, left }));
         // What is not a number contracts neither.
         if !(contraction <= FAST || size == 0.0) {
