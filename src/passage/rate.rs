@@ -7,8 +7,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::dot;
 
-/// Relative change of the rate by one more vector at which it stands: the quotient from both sides is nearer still.
-const TOLERANCE: f64 = 1e-5;
+/// Relative change of the rate by one more vector at which it stands.
+const TOLERANCE: f64 = 1e-6;
 
 /// Most vectors that are made for a rate.
 const VECTORS: usize = 24;

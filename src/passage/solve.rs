@@ -18,8 +18,9 @@ use crate::space::CellSpace;
 use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, Expected, RateOptions};
 use crate::system::{Enclosed, System};
 
-/// Relative change of a rate by turning its density once toward that of the grid, at which it stands.
-const STANDS: f64 = 1e-5;
+/// A rate stands where turning its density once toward that of the grid changes it by less than this share of what half
+/// of the dissipation does.
+const UNSETTLED: f64 = 0.02;
 
 /// Numbers of a passage: mean, standard deviation, the rate of the quasi-stationary density; then the probabilities at
 /// times and the quantiles that are asked for.
@@ -192,15 +193,21 @@ fn moments(
         let of_vector = stage.of_balance(&stage.balance(vector), &left, vector);
         -of_vector / left.over(vector)
     };
-    // A density from another grid is turned once toward this grid's, which does where the quotient stands by then.
+    let rate_change = |vector: &[f64]| {
+        let change = left.through(&other.rates, &other.ends, vector)
+            - stage.of_balance(&stage.balance(vector), &left, vector);
+        -change / left.over(vector)
+    };
+    // A density from another grid is turned once toward this grid's, which does where that changes much less of the
+    // quotient than dissipation does.
     let begun = begun.filter(|begun| dot(begun, begun) > 0.0);
     let turned = match begun {
         Some(begun) => Some((quotient(begun), solver.times(&stage, begun)?)),
         None => None,
     };
     let stands = turned.as_ref().is_some_and(|(before, vector)| {
-        let rate = quotient(vector);
-        (rate - before).abs() <= STANDS * rate
+        let unsettled = (quotient(vector) - before).abs();
+        unsettled <= UNSETTLED * rate_change(vector).abs()
     });
     let (found, lasting) = match turned {
         Some((_, vector)) if stands => (0.0, vector),

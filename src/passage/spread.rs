@@ -16,7 +16,7 @@ const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 const LINES: usize = 8;
 
 /// Steps by which a crossing is narrowed within a cell, and the width at which it is known.
-const NARROWING: usize = 60;
+const NARROWING: usize = 100;
 const NARROW: f64 = 1e-13;
 
 /// Most points at which a density is known at once; cells are taken one by one where there are more.
@@ -356,4 +356,24 @@ fn product(corner: &[f64], shares: impl Fn(usize) -> Vec<f64>) -> Vec<Point> {
     }
     let share = 1.0 / all.len() as f64;
     all.into_iter().map(|places| (places, share)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn crossings_are_found_of_lines_curves_and_jumps() {
+        let at = 0.318_309_886;
+        let levels: [&dyn Fn(f64) -> f64; 4] = [
+            &|x| at - x,
+            &|x| (x - at) * (1.0 + 9.0 * x * x),
+            &|x| (40.0 * (x - at)).exp() - 1.0,
+            &|x| if x < at { -1.0 } else { 1e6 },
+        ];
+        for level in levels {
+            let found = crossing(&level, [(0.0, level(0.0)), (0.5, level(0.5))]);
+            assert!((found - at).abs() < 1e-9, "{found}");
+        }
+    }
 }

@@ -63,3 +63,58 @@ pub(super) fn whole(kept: &[bool], shape: &[usize], axes: &[Vec<AxisWeights>]) -
     let missing = gathered(&missing, shape, &ones);
     missing.into_iter().map(|missing| missing == 0.0).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::start::{NODES, about};
+    use super::*;
+    use crate::space::{Axis, CellSpace};
+
+    /// Two grids on one square, the second with other cells, and weights of the first's nodes at the second's.
+    fn grids() -> (CellSpace, CellSpace, Vec<Vec<AxisWeights>>) {
+        let axis = |count| Axis::uniform(-1.0, 1.0, count).unwrap();
+        let own = CellSpace::new(vec![axis(12), axis(9)]).unwrap();
+        let other = CellSpace::new(vec![axis(7), axis(10)]).unwrap();
+        let pairs = own.axes().iter().zip(other.axes());
+        let axes = pairs.map(|(own, other)| {
+            let nodes = other.nodes().iter();
+            nodes.map(|&x| about(own, x, NODES)).collect()
+        });
+        let axes = axes.collect();
+        (own, other, axes)
+    }
+
+    #[test]
+    fn polynomials_are_interpolated_to_rounding_and_masses_keep_their_averages() {
+        let (own, other, axes) = grids();
+        let field = |state: Vec<f64>| state[0].powi(5) * state[1].powi(3) - state[1] + 0.3;
+        let values: Vec<f64> = (0..own.n_cells())
+            .map(|cell| field(own.node(cell)))
+            .collect();
+        let found = gathered(&values, &own.shape(), &axes);
+        for (cell, value) in found.iter().enumerate() {
+            assert!((value - field(other.node(cell))).abs() < 1e-13);
+        }
+        let masses: Vec<f64> = (0..other.n_cells())
+            .map(|cell| (cell as f64).sin())
+            .collect();
+        let spread = scattered(&masses, &own.shape(), &axes);
+        let dot = crate::passage::dot;
+        assert!((dot(&masses, &found) - dot(&spread, &values)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn points_whose_nodes_are_not_all_kept_are_told() {
+        let (own, other, axes) = grids();
+        let mut kept = vec![true; own.n_cells()];
+        assert!(whole(&kept, &own.shape(), &axes).into_iter().all(|all| all));
+        kept[0] = false;
+        // The first node of either axis is read by the points at whose side it is one of the six nearest.
+        let found = whole(&kept, &own.shape(), &axes);
+        let reads = |axis: usize, at: usize| axes[axis][at].each().any(|(node, _)| node == 0);
+        for (cell, is_whole) in found.into_iter().enumerate() {
+            let [x, y] = [0, 1].map(|axis| reads(axis, other.position(cell, axis)));
+            assert_eq!(is_whole, !(x && y));
+        }
+    }
+}

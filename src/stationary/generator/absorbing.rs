@@ -4,7 +4,8 @@
 //! occupies the cells for the times z, Q z = -f, and Σ z is the mean time to its end. A process may last for 10¹² units
 //! of time: then Q is singular to rounding, and z of a plain solve is worth nothing. So one cell that is occupied for
 //! long is held, its balance dropped, and its time follows from e·z = Σf, that everything ends. Nothing in that is a
-//! small difference of large numbers, whether ends are rare or not.
+//! small difference of large numbers, whether ends are rare or not. Where the first solve shows that Q is far from
+//! singular, none is held, which saves the solves that holding takes.
 //!
 //! What another scheme Q' changes follows to first order from both sides, without another factorisation: with w the
 //! expected times to the end from each cell, the mean time changes by w·(Q' - Q) z. What is left of either equation makes
@@ -14,7 +15,7 @@ use sprs::CsMat;
 
 use super::balance::{add_product, dot};
 use super::narrowing;
-use super::newton::{FirstPass, refined};
+use super::newton::{FirstPass, norm, refined};
 use super::passes::{Seat, run_alone};
 use super::preconditioner::{LARGE, Preconditioner, Structure, estimate_of};
 use super::solver::{largest, shape};
@@ -56,6 +57,12 @@ pub(crate) struct Absorbing<'a> {
     /// Rates at which the process ends.
     ends: &'a [f64],
     held: usize,
+    /// What holding a cell takes; `None` where the one that is held is coupled to no other.
+    visits: Option<Visits>,
+}
+
+/// What holding a cell takes.
+struct Visits {
     /// Times in all cells a unit of time in the held one, from visits that begin there.
     unit: Vec<f64>,
     /// Probability that the process ends before it is in the held cell, from each cell; zero from that cell.
@@ -64,7 +71,7 @@ pub(crate) struct Absorbing<'a> {
 
 /// What a process is expected to gather on its way from each cell to its end.
 pub(crate) struct Expected {
-    /// From the held cell.
+    /// From the held cell; zero where none is.
     at_held: f64,
     /// From each cell, less than from the held one: known to more digits than the difference.
     beside: Vec<f64>,
@@ -154,17 +161,44 @@ impl<'s> AbsorbingSolver<'s> {
         shape(cells, "ends", ends.len())?;
         shape(cells, "start", start.len())?;
         let mut held = match &self.preconditioner {
+            Some(kept) if is_alone(matrix, ends, kept.held) => {
+                let stage = Absorbing {
+                    matrix,
+                    ends,
+                    held: kept.held,
+                    visits: None,
+                };
+                let times = self.times(&stage, start)?;
+                return Ok((stage, times));
+            }
             Some(kept) => kept.held,
-            None => self.factorise(matrix, largest(start).0)?,
+            None => {
+                if let Some(found) = self.free(matrix, ends, start)? {
+                    return Ok(found);
+                }
+                self.factorise(matrix, largest(start).0)?
+            }
         };
         let mut tried = 1;
         loop {
-            let mut stage = self.unit(matrix, ends, held)?;
+            let unit = self.unit(matrix, held)?;
+            let mut stage = Absorbing {
+                matrix,
+                ends,
+                held,
+                visits: Some(Visits {
+                    unit,
+                    ended: Vec::new(),
+                }),
+            };
             let times = self.times(&stage, start)?;
             // The cell that is held may turn out to be occupied for a short time only.
             let (longest, time) = largest(&times);
             if times[held].abs() >= LEAST_HELD * time || tried == TRIED {
-                stage.ended = self.reduced(matrix, held, &without(ends, held), true)?;
+                let ended = self.reduced(matrix, held, &without(ends, held), true)?;
+                if let Some(visits) = &mut stage.visits {
+                    visits.ended = ended;
+                }
                 return Ok((stage, times));
             }
             held = self.factorise(matrix, longest)?;
@@ -172,13 +206,50 @@ impl<'s> AbsorbingSolver<'s> {
         }
     }
 
-    fn unit<'a>(
+    /// A stage at which no cell is held but one that is coupled to none, with the times for a start; `None` where there
+    /// is no such cell, or Q is too near to a singular matrix for one pass a solve.
+    fn free<'a>(
         &mut self,
         matrix: &'a CsMat<f64>,
         ends: &'a [f64],
-        held: usize,
-    ) -> Result<Absorbing<'a>, RateError> {
-        let mut source = vec![0.0; ends.len()];
+        start: &[f64],
+    ) -> Result<Option<(Absorbing<'a>, Vec<f64>)>, RateError> {
+        let Some(held) = (0..ends.len()).find(|&cell| is_alone(matrix, ends, cell)) else {
+            return Ok(None);
+        };
+        self.factorise(matrix, held)?;
+        let Some(kept) = &self.preconditioner else {
+            return Ok(None);
+        };
+        let source: Vec<f64> = start.iter().map(|value| -value).collect();
+        let mut times = kept.apply_one(&source);
+        let mut rest = vec![0.0; source.len()];
+        add_product(matrix, &times, &mut rest);
+        let pairs = rest.iter_mut().zip(&source);
+        pairs.for_each(|(product, source)| *product = source - *product);
+        let correction = kept.apply_one(&rest);
+        self.work.passes += 2;
+        let first = FirstPass {
+            contraction: norm(&correction) / norm(&times),
+            left: norm(&rest) / norm(&source),
+        };
+        if !first.is_enough(0.0, self.options.tolerance) {
+            return Ok(None);
+        }
+        self.first = Some(first);
+        let pairs = times.iter_mut().zip(correction);
+        pairs.for_each(|(value, correction)| *value += correction);
+        let stage = Absorbing {
+            matrix,
+            ends,
+            held,
+            visits: None,
+        };
+        Ok(Some((stage, times)))
+    }
+
+    fn unit(&mut self, matrix: &CsMat<f64>, held: usize) -> Result<Vec<f64>, RateError> {
+        let mut source = vec![0.0; self.space.n_cells()];
         if let Some(column) = matrix.outer_view(held) {
             for (row, rate) in column.iter() {
                 source[row] = -rate;
@@ -187,13 +258,7 @@ impl<'s> AbsorbingSolver<'s> {
         source[held] = 0.0;
         let mut unit = self.reduced(matrix, held, &source, false)?;
         unit[held] = 1.0;
-        Ok(Absorbing {
-            matrix,
-            ends,
-            held,
-            unit,
-            ended: Vec::new(),
-        })
+        Ok(unit)
     }
 
     /// Factorises in double precision where that is small, in single precision elsewhere; gives the cell that is held.
@@ -233,9 +298,12 @@ impl<'s> AbsorbingSolver<'s> {
         source[held] = 0.0;
         // What is beside the visits of the held cell.
         let mut times = self.reduced(stage.matrix, held, &source, false)?;
+        let Some(Visits { unit, .. }) = &stage.visits else {
+            return Ok(times);
+        };
         let ended = start.iter().sum::<f64>() - dot(stage.ends, &times);
-        let time = ended / dot(stage.ends, &stage.unit);
-        let pairs = times.iter_mut().zip(&stage.unit);
+        let time = ended / dot(stage.ends, unit);
+        let pairs = times.iter_mut().zip(unit);
         pairs.for_each(|(value, unit)| *value += time * unit);
         Ok(times)
     }
@@ -254,15 +322,21 @@ impl<'s> AbsorbingSolver<'s> {
         let (matrix, held) = (stage.matrix, stage.held);
         // Before the held cell is reached.
         let gathered = self.reduced(matrix, held, &without(gain, held), true)?;
+        let Some(Visits { ended, .. }) = &stage.visits else {
+            return Ok(Expected {
+                at_held: 0.0,
+                beside: gathered,
+            });
+        };
         let from_held = |values: &[f64]| -> f64 {
             let column = matrix.outer_view(held);
             let terms =
                 column.map(|column| column.iter().map(|(row, rate)| rate * values[row]).sum());
             terms.unwrap_or(0.0)
         };
-        let ending = stage.ends[held] + from_held(&stage.ended);
+        let ending = stage.ends[held] + from_held(ended);
         let at_held = (gain[held] + from_held(&gathered)) / ending;
-        let pairs = gathered.iter().zip(&stage.ended);
+        let pairs = gathered.iter().zip(ended);
         Ok(Expected {
             at_held,
             beside: pairs.map(|(gain, end)| gain - end * at_held).collect(),
@@ -311,6 +385,12 @@ impl<'s> AbsorbingSolver<'s> {
         self.first = self.first.or(found.first);
         Ok(found.solution)
     }
+}
+
+/// Whether a cell is coupled to no other, and nothing ends there: one inside a target.
+fn is_alone(matrix: &CsMat<f64>, ends: &[f64], cell: usize) -> bool {
+    let column = matrix.outer_view(cell);
+    ends[cell] == 0.0 && column.is_some_and(|column| column.nnz() == 1)
 }
 
 /// The right side of what is gathered before a cell is reached.

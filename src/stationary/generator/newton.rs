@@ -173,14 +173,14 @@ pub(super) struct Refined {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FirstPass {
     /// Size of the first correction over that of the solution.
-    contraction: f64,
+    pub(super) contraction: f64,
     /// Residual after the pass over the source.
-    left: f64,
+    pub(super) left: f64,
 }
 
 impl FirstPass {
     /// Whether a first pass alone will do for another source, of which it leaves so much.
-    fn is_enough(self, left: f64, tolerance: f64) -> bool {
+    pub(super) fn is_enough(self, left: f64, tolerance: f64) -> bool {
         let worse = (left / self.left.max(f64::EPSILON)).max(1.0);
         OTHER_SOURCES * worse * self.contraction <= tolerance
     }
