@@ -95,10 +95,6 @@ pub fn timed(
     for (error, border) in errors.iter_mut().zip(border) {
         *error += border;
     }
-    if std::env::var("PW").is_ok() {
-        use std::io::Write as _;
-        let _ = writeln!(std::io::stderr(), "work {work:?}");
-    }
     let reduced = pairs(&finest[0].errors, &finest[1].errors);
     let all = pairs(&values, &errors).zip(reduced);
     let mut all = all.map(|((value, error), (full, half))| (value, error + full.max(half)));

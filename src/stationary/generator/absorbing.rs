@@ -27,6 +27,10 @@ use crate::space::CellSpace;
 /// Another cell is held where the one that is held is occupied for less than this share of the longest time.
 const LEAST_HELD: f64 = 1e-3;
 
+/// Bytes of factors in double precision, over what is large for iterations, up to which they are made: a pass takes twice
+/// as long as in single precision, and a solve half as many.
+const ROOM: u64 = 4;
+
 /// Cells that are tried.
 const TRIED: usize = 3;
 
@@ -207,7 +211,7 @@ impl<'s> AbsorbingSolver<'s> {
     }
 
     /// A stage at which no cell is held but one that is coupled to none, with the times for a start; `None` where there
-    /// is no such cell, or Q is too near to a singular matrix for one pass a solve.
+    /// is no such cell, factors are in single precision, or Q is too near to a singular matrix for one pass a solve.
     fn free<'a>(
         &mut self,
         matrix: &'a CsMat<f64>,
@@ -217,6 +221,9 @@ impl<'s> AbsorbingSolver<'s> {
         let Some(held) = (0..ends.len()).find(|&cell| is_alone(matrix, ends, cell)) else {
             return Ok(None);
         };
+        if self.method(&self.structure(matrix))? != RateMethod::Lu {
+            return Ok(None);
+        }
         self.factorise(matrix, held)?;
         let Some(kept) = &self.preconditioner else {
             return Ok(None);
@@ -261,21 +268,29 @@ impl<'s> AbsorbingSolver<'s> {
         Ok(unit)
     }
 
-    /// Factorises in double precision where that is small, in single precision elsewhere; gives the cell that is held.
-    fn factorise(&mut self, matrix: &CsMat<f64>, held: usize) -> Result<usize, RateError> {
-        let structure = Structure {
+    /// Double precision where that is not too large, with which one pass does for a solve; single precision elsewhere.
+    fn method(&self, structure: &Structure) -> Result<RateMethod, RateError> {
+        let limit = self.options.memory_limit_bytes;
+        let of = |method| estimate_of(self.space, structure, limit, Some(method));
+        match of(RateMethod::Lu) {
+            Ok(plan) if plan.factor_bytes <= ROOM * LARGE => Ok(plan.method),
+            _ => Ok(of(RateMethod::LuSingle)?.method),
+        }
+    }
+
+    fn structure(&self, matrix: &CsMat<f64>) -> Structure {
+        Structure {
             reach: narrowing::reach(self.space, matrix),
             folded: None,
-        };
-        let limit = self.options.memory_limit_bytes;
-        let of = |method| estimate_of(self.space, &structure, limit, Some(method));
-        let plan = match of(RateMethod::Lu) {
-            Ok(plan) if plan.factor_bytes <= LARGE => plan,
-            _ => of(RateMethod::LuSingle)?,
-        };
+        }
+    }
+
+    /// Factorises; gives the cell that is held.
+    fn factorise(&mut self, matrix: &CsMat<f64>, held: usize) -> Result<usize, RateError> {
+        let structure = self.structure(matrix);
+        let method = self.method(&structure)?;
         let old = self.preconditioner.take();
         let (space, cancellation) = (self.space, &self.cancellation);
-        let method = plan.method;
         let new = Preconditioner::new(space, &structure, method, matrix, held, old, cancellation)?;
         self.work.factorisations += 1;
         let held = new.held;

@@ -220,13 +220,6 @@ pub(super) async fn refined(
         used += 1;
         let size = norm(&correction);
         let contraction = size / before;
-        if used == 2 && std::env::var("PW").is_ok() {
-            use std::io::Write as _;
-            let _ = writeln!(
-                std::io::stderr(),
-                "contraction {contraction:e} left {left:e}"
-            );
-        }
         first = first.or(Some(FirstPass { contraction, left }));
         // What is not a number contracts neither.
         if !(contraction <= FAST || size == 0.0) {
