@@ -86,7 +86,7 @@ impl Question<'_> {
             true => weights(FEWER_NODES, spread)?,
             false => start.clone(),
         };
-        let mut solver = AbsorbingSolver::new(&space, *self.rates, self.cancellation);
+        let mut solver = AbsorbingSolver::new(&space, *self.rates, self.cancellation).rough();
         let cells = (&space, full.kept.as_slice());
         let of_density =
             judged.and_then(|density| DensityStart::new(self.passage, density, self.space, cells));

@@ -61,7 +61,7 @@ pub(super) fn models(
                 *rate -= shift;
             }
         }
-        let mut solver = AbsorbingSolver::new(space, *rates, cancellation);
+        let mut solver = AbsorbingSolver::new(space, *rates, cancellation).rough();
         let (stage, mut column) = solver.stage(&matrix, &ends, starts[0])?;
         let mut row = solver.expected(&stage, &first.weights[0])?.values();
         for vector in 0..VECTORS {

@@ -39,7 +39,9 @@ pub(crate) struct AbsorbingSolver<'s> {
     space: &'s CellSpace,
     options: RateOptions,
     preconditioner: Option<Preconditioner>,
-    /// What the first pass through the factors did.
+    /// Whether a solve may be left after one pass.
+    is_rough: bool,
+    /// What the first pass through the factors did, where solves may be left after one.
     first: Option<FirstPass>,
     /// Factorisations that were made, and passes through them.
     pub(crate) work: AbsorbingWork,
@@ -143,10 +145,17 @@ impl<'s> AbsorbingSolver<'s> {
             space,
             options,
             preconditioner: None,
+            is_rough: false,
             first: None,
             work: AbsorbingWork::default(),
             cancellation: cancellation.clone(),
         }
+    }
+
+    /// The same, with solves that are left after one pass where the first shows that factors are good enough for that.
+    pub(crate) fn rough(mut self) -> Self {
+        self.is_rough = true;
+        self
     }
 
     /// Makes ready to solve a matrix, `n × n` by columns, column j the rates out of cell j, summing to -`ends[j]`, and
@@ -218,7 +227,8 @@ impl<'s> AbsorbingSolver<'s> {
         ends: &'a [f64],
         start: &[f64],
     ) -> Result<Option<(Absorbing<'a>, Vec<f64>)>, RateError> {
-        let Some(held) = (0..ends.len()).find(|&cell| is_alone(matrix, ends, cell)) else {
+        let alone = (0..ends.len()).find(|&cell| is_alone(matrix, ends, cell));
+        let Some(held) = alone.filter(|_| self.is_rough) else {
             return Ok(None);
         };
         if self.method(&self.structure(matrix))? != RateMethod::Lu {
@@ -272,8 +282,9 @@ impl<'s> AbsorbingSolver<'s> {
     fn method(&self, structure: &Structure) -> Result<RateMethod, RateError> {
         let limit = self.options.memory_limit_bytes;
         let of = |method| estimate_of(self.space, structure, limit, Some(method));
+        let room = if self.is_rough { ROOM * LARGE } else { LARGE };
         match of(RateMethod::Lu) {
-            Ok(plan) if plan.factor_bytes <= ROOM * LARGE => Ok(plan.method),
+            Ok(plan) if plan.factor_bytes <= room => Ok(plan.method),
             _ => Ok(of(RateMethod::LuSingle)?.method),
         }
     }
@@ -397,7 +408,9 @@ impl<'s> AbsorbingSolver<'s> {
         let found = run_alone(apply, &seat, work)?;
         let found = found.ok_or(RateError::Sensitivity)?;
         self.work.passes += found.used;
-        self.first = self.first.or(found.first);
+        if self.is_rough {
+            self.first = self.first.or(found.first);
+        }
         Ok(found.solution)
     }
 }
