@@ -12,7 +12,7 @@
 
 mod border;
 
-use sprs::{CsMat, TriMat};
+use sprs::CsMat;
 
 use super::assemble::{axis_blocks, axis_fluxes, check, strides};
 use super::geometry::{AxisGeometry, End};
@@ -26,8 +26,9 @@ use border::{Beyond, Border, GridLine};
 /// The generator on the cells outside of a region.
 #[derive(Debug, Clone)]
 pub struct AbsorbingGenerator {
-    /// Q, `n × n` over all cells of the space, per unit time, by columns. Cells inside the region are coupled to none.
-    pub matrix: CsMat<f64>,
+    /// Entries of Q, `n × n` over all cells of the space, per unit time: row, column, rate. A place may have several,
+    /// which sum. Cells inside the region are coupled to none, and have one.
+    pub rates: Vec<(usize, usize, f64)>,
     /// Which cells are outside of the region: their nodes are.
     pub kept: Vec<bool>,
     /// Rate at which the process ends from a cell: it enters the region, or leaves the range of the cells.
@@ -35,6 +36,45 @@ pub struct AbsorbingGenerator {
     /// Weights with which the unknowns sum to the mass outside of the region: zero inside, one away from the border,
     /// where the density does not end between two nodes. In two ways, which differ where the border is oblique.
     pub weights: [Vec<f64>; 2],
+}
+
+impl AbsorbingGenerator {
+    /// Q by columns.
+    pub fn matrix(&self) -> CsMat<f64> {
+        let cells = self.kept.len();
+        // Entries by their columns.
+        let mut starts = vec![0; cells + 1];
+        for &(_, column, _) in &self.rates {
+            starts[column + 1] += 1;
+        }
+        for column in 0..cells {
+            starts[column + 1] += starts[column];
+        }
+        let mut places = starts.clone();
+        let mut sorted = vec![(0, 0.0); self.rates.len()];
+        for &(row, column, rate) in &self.rates {
+            sorted[places[column]] = (row, rate);
+            places[column] += 1;
+        }
+        let mut sums = vec![0.0; cells];
+        let mut seen = vec![usize::MAX; cells];
+        let (mut ends, mut rows, mut data) = (vec![0], Vec::new(), Vec::new());
+        for column in 0..cells {
+            let first = rows.len();
+            for &(row, rate) in &sorted[starts[column]..starts[column + 1]] {
+                if seen[row] != column {
+                    seen[row] = column;
+                    sums[row] = 0.0;
+                    rows.push(row);
+                }
+                sums[row] += rate;
+            }
+            rows[first..].sort_unstable();
+            data.extend(rows[first..].iter().map(|&row: &usize| sums[row]));
+            ends.push(rows.len());
+        }
+        CsMat::new_csc((cells, cells), ends, rows, data)
+    }
 }
 
 /// How stencils go on past a border. What the two differ by is an error of the border.
@@ -93,7 +133,7 @@ pub fn assemble_absorbing(
             }
         }
     }
-    assembly.matrix()
+    assembly.generator()
 }
 
 /// The level function at the nodes of all cells.
@@ -243,28 +283,21 @@ impl Assembly<'_> {
         }
     }
 
-    /// The matrix, with the cells inside the region on their own.
-    fn matrix(self) -> Result<AbsorbingGenerator, GeneratorError> {
+    /// The generator, with the cells inside the region on their own.
+    fn generator(mut self) -> Result<AbsorbingGenerator, GeneratorError> {
         let cells = self.ends.len();
         let kept: Vec<bool> = (0..cells).map(|cell| self.border.keeps(cell)).collect();
-        let mut diagonal = 0.0f64;
-        let mut triplets = TriMat::with_capacity((cells, cells), self.entries.len() + cells);
-        for &(row, column, rate) in &self.entries {
-            triplets.add_triplet(row, column, rate);
-            if row == column {
-                diagonal = diagonal.max(rate.abs());
-            }
-        }
         if !self.entries.iter().all(|(_, _, rate)| rate.is_finite()) {
             return Err(GeneratorError::Overflow { axis: 0 });
         }
+        let on_diagonal = self.entries.iter().filter(|(row, column, _)| row == column);
+        let diagonal = on_diagonal.fold(0.0f64, |most, (_, _, rate)| most.max(rate.abs()));
         let diagonal = if diagonal > 0.0 { diagonal } else { 1.0 };
-        for (cell, &kept) in kept.iter().enumerate() {
-            let rate = if kept { 0.0 } else { -diagonal };
-            triplets.add_triplet(cell, cell, rate);
-        }
+        let inside = (0..cells).filter(|&cell| !kept[cell]);
+        self.entries
+            .extend(inside.map(|cell| (cell, cell, -diagonal)));
         Ok(AbsorbingGenerator {
-            matrix: triplets.to_csc(),
+            rates: self.entries,
             kept,
             ends: self.ends,
             weights: self.weights,
@@ -304,7 +337,7 @@ mod tests {
                     (dissipation, Closure::Fourth),
                 );
                 let found = found.unwrap();
-                for (cell, column) in found.matrix.outer_iterator().enumerate() {
+                for (cell, column) in found.matrix().outer_iterator().enumerate() {
                     let state = space.centre(cell);
                     assert_eq!(found.kept[cell], level.at(&state) >= 0.0);
                     if !found.kept[cell] {

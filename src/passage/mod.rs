@@ -39,25 +39,29 @@
 //! | weights of a start | `start.rs` |
 //! | what is known of the steady state, and what its errors do | `density_start.rs` |
 //! | masses of a density in a region | `spread.rs` |
+//! | interpolation on all points of a grid | `tensor.rs` |
 //! | numbers on one grid | `solve.rs` |
 //! | the rate, from the vectors of moments | `rate.rs` |
+//! | its density, from one grid to another | `lasting.rs` |
 //! | probabilities at times, and quantiles | `survival.rs` |
 //! | numbers with errors | `timed.rs` |
 
 mod cells;
 mod density_start;
+mod lasting;
 mod rate;
 mod solve;
 mod spread;
 mod start;
 mod survival;
+mod tensor;
 mod timed;
 
 pub use density_start::KnownDensity;
 pub use timed::{Timed, WithError, timed};
 
-use crate::generator::GeneratorError;
-use crate::space::SpaceError;
+use crate::generator::{GeneratorError, levels};
+use crate::space::{CellSpace, SpaceError};
 use crate::stationary::generator::RateError;
 use crate::system::{BoundQuantity, ParameterValues, PassageQuestion, PassageStart, SystemError};
 
@@ -94,6 +98,18 @@ impl Passage {
 }
 
 impl Passage {
+    /// [`Passage::start_level`] at the nodes of cells.
+    fn start_levels(&self, space: &CellSpace) -> Result<Vec<f64>, GeneratorError> {
+        let mut all = levels(space, &self.until)?;
+        all.iter_mut().for_each(|level| *level = -*level);
+        if let Start::Density(Some(region)) = &self.start {
+            let of_region = levels(space, region)?;
+            let pairs = all.iter_mut().zip(of_region);
+            pairs.for_each(|(level, other)| *level = level.max(other));
+        }
+        Ok(all)
+    }
+
     /// Negative where a process that is spread as the steady state is starts: in the region of the start and outside of
     /// the target.
     fn start_level(&self, state: &[f64]) -> f64 {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::cells::{PassageCells, cells};
 use super::density_start::DensityStart;
+use super::lasting::Lasting;
 use super::rate::slowest;
 use super::spread::add_density;
 use super::start::{FEWER_NODES, NODES, add_state};
@@ -17,6 +18,10 @@ use crate::space::CellSpace;
 use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, Expected, RateOptions};
 use crate::system::{Enclosed, System};
 
+/// A rate stands where turning its density once toward that of the grid changes it by less than this share of what half
+/// of the dissipation does.
+const UNSETTLED: f64 = 0.02;
+
 /// Numbers of a passage: mean, standard deviation, the rate of the quasi-stationary density; then the probabilities at
 /// times and the quantiles that are asked for.
 pub(super) struct Numbers {
@@ -27,6 +32,14 @@ pub(super) struct Numbers {
     pub(super) border: [f64; 3],
     /// What of the mean's relative error comes from the density of the start, and from the border.
     stretch: f64,
+}
+
+/// What one grid gives.
+pub(super) struct Solved {
+    /// With all and with half of the dissipation.
+    pub(super) both: [Numbers; 2],
+    pub(super) lasting: Lasting,
+    pub(super) work: AbsorbingWork,
 }
 
 /// What a passage is solved with.
@@ -42,8 +55,13 @@ pub(super) struct Question<'a> {
 }
 
 impl Question<'_> {
-    /// The numbers with all and with half of the dissipation on `factor` times the sweep's cells an axis.
-    pub(super) fn solve(&self, factor: f64) -> Result<([Numbers; 2], AbsorbingWork), PassageError> {
+    /// The numbers with all and with half of the dissipation on `factor` times the sweep's cells an axis, and the
+    /// density of the rate there, which is looked for from that of another grid on.
+    pub(super) fn solve(
+        &self,
+        factor: f64,
+        other: Option<&Lasting>,
+    ) -> Result<Solved, PassageError> {
         let until = &self.passage.until;
         let found = cells(self.system.as_ref(), self.space, until, factor)?;
         let enclosed = enclosed(self.system, &found);
@@ -68,26 +86,27 @@ impl Question<'_> {
             true => weights(FEWER_NODES, spread)?,
             false => start.clone(),
         };
-        let by_second = judged.and_then(|density| density.second());
-        let second = match &by_second {
-            Some(second) => weights(NODES, Some(second))?,
-            None => start.clone(),
-        };
-        let mut solver = AbsorbingSolver::new(&space, *self.rates, self.cancellation);
+        let mut solver = AbsorbingSolver::new(&space, *self.rates, self.cancellation).rough();
         let cells = (&space, full.kept.as_slice());
         let of_density =
             judged.and_then(|density| DensityStart::new(self.passage, density, self.space, cells));
         let starts = [start.as_slice(), &coarse];
-        let mut both = moments(
+        let begun = other.map(|other| other.on(&space, &full.kept));
+        let (mut both, lasting) = moments(
             &mut solver,
             [&full, &half, &third],
             starts,
             of_density.as_ref(),
+            begun.as_deref(),
         )?;
         let mut work = solver.work;
         drop(solver);
         if let Some(times) = self.passage.times_asked(both[0].values[0]) {
             let settings = (self.rates, self.cancellation);
+            let second = match judged.and_then(|density| density.second()) {
+                Some(second) => weights(NODES, Some(&second))?,
+                None => start.clone(),
+            };
             let starts = [start.as_slice(), &second];
             let (models, more) = models(&space, [&full, &half], starts, times, settings)?;
             work.factorisations += more.factorisations;
@@ -96,7 +115,11 @@ impl Question<'_> {
                 self.passage.add(numbers, model);
             }
         }
-        Ok((both, work))
+        Ok(Solved {
+            both,
+            lasting: Lasting::new(space, lasting),
+            work,
+        })
     }
 
     /// The weights of the cells at the start, Σ = 1, by polynomials through so many nodes an axis; of a steady state
@@ -118,7 +141,9 @@ impl Question<'_> {
             }
             Start::Density(_) => {
                 let spread = (self.space, spread.ok_or(PassageError::NoDensity)?);
+                let levels = self.passage.start_levels(self.space)?;
                 let region = |state: &[f64]| self.passage.start_level(state);
+                let region = (region, levels.as_slice());
                 add_density((space, kept), spread, region, nodes, &mut weights)
             }
         };
@@ -133,34 +158,79 @@ impl Question<'_> {
 
 /// Mean, standard deviation and rate by a generator, and by another one to first order of what they differ by; a third
 /// one, with a border of lower order, adds what it changes to the errors. The start is given by many nodes and by
-/// fewer, and may be spread as a density that has errors of its own.
+/// fewer, and may be spread as a density that has errors of its own. The density of the rate is given too; it is looked
+/// for from `begun` on.
 fn moments(
     solver: &mut AbsorbingSolver<'_>,
     [one, other, third]: [&AbsorbingGenerator; 3],
     [start, coarse]: [&[f64]; 2],
     of_density: Option<&DensityStart<'_>>,
-) -> Result<[Numbers; 2], PassageError> {
+    begun: Option<&[f64]>,
+) -> Result<([Numbers; 2], Vec<f64>), PassageError> {
     if one.ends.iter().all(|&rate| rate == 0.0) {
         return Err(PassageError::Never);
     }
-    let (stage, first) = solver.stage(&one.matrix, &one.ends, start)?;
+    let matrix = one.matrix();
+    let (stage, first) = solver.stage(&matrix, &one.ends, start)?;
     let second = solver.times(&stage, &first)?;
     let [weights, others] = &one.weights;
-    let (mean, square) = (dot(weights, &first), 2.0 * dot(weights, &second));
-    let (rate, lasting) = slowest(&second, |vector| solver.times(&stage, vector))?;
     let expected = solver.expected(&stage, weights)?;
     let again = solver.expected(&stage, &expected.values())?;
+    // What the solves of either side leave is in both to first order, and in what both give together to second.
+    let left_of = |source: &[f64], expected: &Expected, times: &[f64], balance: &[f64]| {
+        expected.over(source) + stage.of_balance(balance, expected, times)
+    };
+    let [of_first, of_second] = [&first, &second].map(|times| stage.balance(times));
+    let mean = dot(weights, &first) + left_of(start, &expected, &first, &of_first);
+    let square = 2.0
+        * (dot(weights, &second)
+            + left_of(&first, &expected, &second, &of_second)
+            + left_of(start, &again, &first, &of_first));
     let scaled = again.values();
     let scaled: Vec<f64> = scaled.iter().map(|value| value / mean.powi(2)).collect();
     let left = solver.expected(&stage, &scaled)?;
+    let quotient = |vector: &[f64]| {
+        let of_vector = stage.of_balance(&stage.balance(vector), &left, vector);
+        -of_vector / left.over(vector)
+    };
+    let rate_change = |vector: &[f64]| {
+        let change = left.through(&other.rates, &other.ends, vector)
+            - stage.of_balance(&stage.balance(vector), &left, vector);
+        -change / left.over(vector)
+    };
+    // A density from another grid is turned once toward this grid's, which does where that changes much less of the
+    // quotient than dissipation does.
+    let begun = begun.filter(|begun| dot(begun, begun) > 0.0);
+    let turned = match begun {
+        Some(begun) => Some((quotient(begun), solver.times(&stage, begun)?)),
+        None => None,
+    };
+    let stands = turned.as_ref().is_some_and(|(before, vector)| {
+        let unsettled = (quotient(vector) - before).abs();
+        unsettled <= UNSETTLED * rate_change(vector).abs()
+    });
+    let (found, lasting) = match turned {
+        Some((_, vector)) if stands => (0.0, vector),
+        turned => {
+            let from = turned.map_or_else(|| second.clone(), |(_, vector)| vector);
+            slowest(&from, |vector| solver.times(&stage, vector))?
+        }
+    };
+    let (overlap, of_lasting) = (left.over(&lasting), stage.balance(&lasting));
+    let rate = match quotient(&lasting) {
+        quotient if quotient > 0.0 && quotient.is_finite() => quotient,
+        _ => found,
+    };
     // Of mean, mean square and rate, by another generator.
     let changes = |other: &AbsorbingGenerator| -> [f64; 3] {
-        let to = (&other.matrix, other.ends.as_slice());
-        let change = |expected: &Expected, times: &[f64]| stage.change(to, expected, times);
+        let change = |expected: &Expected, times: &[f64], balance: &[f64]| {
+            expected.through(&other.rates, &other.ends, times)
+                - stage.of_balance(balance, expected, times)
+        };
         [
-            change(&expected, &first),
-            2.0 * (change(&expected, &second) + change(&again, &first)),
-            -change(&left, &lasting) / dot(&left.values(), &lasting),
+            change(&expected, &first, &of_first),
+            2.0 * (change(&expected, &second, &of_second) + change(&again, &first, &of_first)),
+            -change(&left, &lasting, &of_lasting) / overlap,
         ]
     };
     let spread = (square - mean * mean).max(f64::MIN_POSITIVE).sqrt();
@@ -201,7 +271,7 @@ fn moments(
         rate + rate_change,
     );
     match (full, half) {
-        (Some(full), Some(half)) => Ok([full, half]),
+        (Some(full), Some(half)) => Ok(([full, half], lasting)),
         _ => Err(PassageError::Never),
     }
 }

@@ -4,7 +4,8 @@
 //! Cells that the region's border cuts are integrated up to it: along the axis that is steepest across the border to
 //! the place where each line crosses it, over lines that lie close to each other.
 
-use super::start::{AtCoordinate as _, AxisWeights, NODES, add_state, along, each};
+use super::start::{AtCoordinate as _, AxisWeights, NODES, about, add_state, along, each};
+use super::tensor::{gathered, scattered, whole};
 use crate::MAX_DIMENSION;
 use crate::space::CellSpace;
 
@@ -14,53 +15,49 @@ const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 /// Lines along another axis of a cell that a border cuts; half as many where nodes are fewer.
 const LINES: usize = 8;
 
-/// Halvings by which a crossing is found within a cell.
-const HALVINGS: usize = 40;
+/// Steps by which a crossing is narrowed within a cell, and the width at which it is known.
+const NARROWING: usize = 100;
+const NARROW: f64 = 1e-13;
+
+/// Most points at which a density is known at once; cells are taken one by one where there are more.
+const MOST_POINTS: usize = 1 << 22;
 
 /// Spreads a density (at the nodes of `cells`, times local volumes), as far as it lies where `region` is negative, over
-/// the kept nodes of other cells, with so many nodes an axis about each point; gives the mass that was spread.
+/// the kept nodes of other cells, with so many nodes an axis about each point; gives the mass that was spread. `levels`
+/// are those of the region at the nodes.
 pub(super) fn add_density(
-    (space, kept): (&CellSpace, &[bool]),
+    target: (&CellSpace, &[bool]),
     (cells, unknowns): (&CellSpace, &[f64]),
-    region: impl Fn(&[f64]) -> f64,
+    (region, levels): (impl Fn(&[f64]) -> f64, &[f64]),
     nodes: usize,
     weights: &mut [f64],
 ) -> f64 {
-    let shape = cells.shape();
     let spread = Spread {
         cells,
+        unknowns,
         region,
         lines: if nodes == NODES { LINES } else { LINES / 2 },
+        nodes,
     };
-    let levels = spread.levels();
+    let mut is_whole = vec![false; cells.n_cells()];
     let mut sum = 0.0;
     for (cell, &level) in levels.iter().enumerate() {
-        let cut = spread.is_near_border(&levels, cell);
-        if !cut && level >= 0.0 {
-            continue;
+        let is_inside = level < 0.0;
+        let parts = spread
+            .is_near_border(levels, cell)
+            .then(|| spread.cut(cell));
+        match parts {
+            Some(Some(points)) => sum += spread.add(points, target, weights),
+            Some(None) => is_whole[cell] = true,
+            None => is_whole[cell] = is_inside,
         }
-        let points = if cut {
-            spread.cut(cell)
-        } else {
-            spread.whole(cell)
-        };
-        for (places, share) in points {
-            let product: Vec<AxisWeights> = places
-                .iter()
-                .zip(&shape)
-                .map(|(&place, &count)| along(count, place, 0, nodes))
-                .collect();
-            let mut value = 0.0;
-            each(cells, &product, |cell, weight| {
-                value += weight * unknowns[cell];
-            });
-            let mass = value * share;
-            let state = spread.state(&places);
-            let state = &state[..cells.dimension()];
-            if mass != 0.0 && add_state(space, kept, (state, mass), nodes, weights) {
-                sum += mass;
-            }
-        }
+    }
+    let points: usize = spread.points().iter().map(Vec::len).product();
+    if points <= MOST_POINTS {
+        return sum + spread.add_whole(&is_whole, target, weights);
+    }
+    for cell in (0..is_whole.len()).filter(|&cell| is_whole[cell]) {
+        sum += spread.add(spread.whole(cell), target, weights);
     }
     sum
 }
@@ -68,8 +65,12 @@ pub(super) fn add_density(
 /// Cells with a region.
 struct Spread<'a, R> {
     cells: &'a CellSpace,
+    /// A density at the nodes, times local volumes.
+    unknowns: &'a [f64],
     region: R,
     lines: usize,
+    /// Nodes of a polynomial along an axis.
+    nodes: usize,
 }
 
 /// A point in cell coordinates, and the share of a cell that it stands for.
@@ -95,10 +96,106 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
             .collect()
     }
 
-    /// The level at all nodes.
-    fn levels(&self) -> Vec<f64> {
-        let one = |cell: usize| (self.region)(&self.cells.node(cell));
-        (0..self.cells.n_cells()).map(one).collect()
+    /// Adds the masses of points one by one; gives their sum.
+    fn add(
+        &self,
+        points: Vec<Point>,
+        (space, kept): (&CellSpace, &[bool]),
+        weights: &mut [f64],
+    ) -> f64 {
+        let shape = self.cells.shape();
+        let mut sum = 0.0;
+        for (places, share) in points {
+            let product: Vec<AxisWeights> = places
+                .iter()
+                .zip(&shape)
+                .map(|(&place, &count)| along(count, place, 0, self.nodes))
+                .collect();
+            let mut value = 0.0;
+            each(self.cells, &product, |cell, weight| {
+                value += weight * self.unknowns[cell];
+            });
+            let mass = value * share;
+            let state = self.state(&places);
+            let state = (&state[..self.cells.dimension()], mass);
+            if mass != 0.0 && add_state(space, kept, state, self.nodes, weights) {
+                sum += mass;
+            }
+        }
+        sum
+    }
+
+    /// Places of the points of whole cells along each axis.
+    fn points(&self) -> Vec<Vec<f64>> {
+        let of_axis = |axis: usize| {
+            let cells = 0..self.cells.axes()[axis].count();
+            let shares = self.shares(axis, &GAUSS);
+            let points =
+                cells.flat_map(|cell| shares.clone().into_iter().map(move |share| (cell, share)));
+            points.map(|(cell, share)| cell as f64 + share).collect()
+        };
+        (0..self.cells.dimension()).map(of_axis).collect()
+    }
+
+    /// Adds the masses of whole cells, all points at once but those beside the target; gives their sum.
+    fn add_whole(
+        &self,
+        is_whole: &[bool],
+        (space, kept): (&CellSpace, &[bool]),
+        weights: &mut [f64],
+    ) -> f64 {
+        let (cells, shape) = (self.cells, self.cells.shape());
+        let points = self.points();
+        let counts: Vec<usize> = points.iter().map(Vec::len).collect();
+        let all = || points.iter().zip(cells.axes()).zip(space.axes());
+        let from: Vec<Vec<AxisWeights>> = all()
+            .map(|((points, own), _)| {
+                let points = points.iter();
+                points
+                    .map(|&place| along(own.count(), place, 0, self.nodes))
+                    .collect()
+            })
+            .collect();
+        let to: Vec<Vec<AxisWeights>> = all()
+            .map(|((points, own), other)| {
+                let points = points.iter();
+                points
+                    .map(|&place| about(other, own.at_coordinate(place), self.nodes))
+                    .collect()
+            })
+            .collect();
+        let mut masses = gathered(self.unknowns, &shape, &from);
+        let reaches = whole(kept, &space.shape(), &to);
+        let share: f64 = shape
+            .iter()
+            .zip(&counts)
+            .map(|(&cells, &points)| cells as f64 / points as f64)
+            .product();
+        let (mut sum, mut aside) = (0.0, Vec::new());
+        for (number, mass) in masses.iter_mut().enumerate() {
+            let (mut rest, mut cell, mut stride) = (number, 0, 1);
+            let mut places = vec![0.0; counts.len()];
+            for axis in (0..counts.len()).rev() {
+                let at = rest % counts[axis];
+                rest /= counts[axis];
+                places[axis] = points[axis][at];
+                cell += at * shape[axis] / counts[axis] * stride;
+                stride *= shape[axis];
+            }
+            *mass *= if is_whole[cell] && reaches[number] {
+                share
+            } else {
+                0.0
+            };
+            sum += *mass;
+            if is_whole[cell] && !reaches[number] {
+                aside.push((places, share));
+            }
+        }
+        let spread = scattered(&masses, &space.shape(), &to);
+        let pairs = weights.iter_mut().zip(spread);
+        pairs.for_each(|(weight, mass)| *weight += mass);
+        sum + self.add(aside, (space, kept), weights)
     }
 
     /// Whether a cell and one of those around it, corners among them, are on both sides of the border.
@@ -130,8 +227,8 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
         }
     }
 
-    /// Points of a cell that the border may cut.
-    fn cut(&self, cell: usize) -> Vec<Point> {
+    /// Points of a cell that the border may cut; `None` where all of it lies in the region.
+    fn cut(&self, cell: usize) -> Option<Vec<Point>> {
         let corner = self.corner(cell);
         let middle: Vec<f64> = corner.iter().map(|place| place + 0.5).collect();
         let change = |axis: usize| {
@@ -144,8 +241,10 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
         };
         let axes = (0..corner.len()).filter(|&axis| !self.cells.axes()[axis].is_modes());
         let steepest = axes.max_by(|&one, &other| change(one).total_cmp(&change(other)));
+        // Modes alone: none of them is cut.
         let Some(steepest) = steepest else {
-            return self.whole(cell);
+            let is_inside = self.level(&middle) < 0.0;
+            return (!is_inside).then(Vec::new);
         };
         let even: Vec<f64> = (0..self.lines)
             .map(|line| (line as f64 + 0.5) / self.lines as f64)
@@ -154,8 +253,14 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
             true => vec![0.0],
             false => self.shares(axis, &even),
         });
-        let of_line = |(start, share): Point| {
-            let inside = self.inside(&start, steepest);
+        let parts: Vec<_> = lines
+            .into_iter()
+            .map(|(start, share)| (self.inside(&start, steepest), start, share))
+            .collect();
+        if parts.iter().all(|(inside, _, _)| *inside == WHOLE) {
+            return None;
+        }
+        let of_line = |(inside, start, share): (Vec<(f64, f64)>, Vec<f64>, f64)| {
             inside.into_iter().flat_map(move |(from, to)| {
                 let start = start.clone();
                 GAUSS.map(|at| {
@@ -165,7 +270,7 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
                 })
             })
         };
-        lines.into_iter().flat_map(of_line).collect()
+        Some(parts.into_iter().flat_map(of_line).collect())
     }
 
     /// The part of a line through a cell that is in the region, from its start along an axis: up to one crossing in
@@ -176,26 +281,62 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
             places[axis] += share;
             self.level(&places)
         };
-        let half = |from: f64, to: f64| {
-            let is_inside = [from, to].map(|at| level(at) < 0.0);
-            if is_inside[0] == is_inside[1] {
-                return is_inside[0].then_some((from, to));
-            }
-            let (mut a, mut b) = (from, to);
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (a + b);
-                match (level(middle) < 0.0) == is_inside[0] {
-                    true => a = middle,
-                    false => b = middle,
+        let ends = [0.0, 0.5, 1.0].map(|at| (at, level(at)));
+        let half =
+            |[(from, at_from), (to, at_to)]: [(f64, f64); 2]| match (at_from < 0.0, at_to < 0.0) {
+                (true, true) => Some((from, to)),
+                (false, false) => None,
+                (is_first, _) => {
+                    let at = crossing(&level, [(from, at_from), (to, at_to)]);
+                    Some(if is_first { (from, at) } else { (at, to) })
                 }
-            }
-            Some(if is_inside[0] { (from, a) } else { (b, to) })
-        };
-        [(0.0, 0.5), (0.5, 1.0)]
-            .into_iter()
-            .filter_map(|(from, to)| half(from, to))
-            .collect()
+            };
+        let halves = [[ends[0], ends[1]], [ends[1], ends[2]]];
+        halves.into_iter().filter_map(half).collect()
     }
+}
+
+/// Both halves of a line, as [`Spread::inside`] has them where all of it is.
+const WHOLE: [(f64, f64); 2] = [(0.0, 0.5), (0.5, 1.0)];
+
+/// Where a level changes its sign between two places, by secants of which an end that stays counts half (Illinois), and
+/// halving where the level jumps.
+fn crossing(level: &impl Fn(f64) -> f64, [mut a, mut b]: [(f64, f64); 2]) -> f64 {
+    let mut stayed = 0_i32;
+    for _ in 0..NARROWING {
+        if (b.0 - a.0).abs() <= NARROW {
+            break;
+        }
+        let share = a.1 / (a.1 - b.1);
+        let share = if share.is_finite() && stayed.abs() < 4 {
+            share
+        } else {
+            0.5
+        };
+        let at = a.0 + share * (b.0 - a.0);
+        let value = level(at);
+        if value == 0.0 {
+            return at;
+        }
+        if (value < 0.0) == (a.1 < 0.0) {
+            stayed = if stayed.abs() < 4 {
+                stayed.max(0) + 1
+            } else {
+                0
+            };
+            a = (at, value);
+            b.1 *= if stayed > 1 { 0.5 } else { 1.0 };
+        } else {
+            stayed = if stayed.abs() < 4 {
+                stayed.min(0) - 1
+            } else {
+                0
+            };
+            b = (at, value);
+            a.1 *= if stayed < -1 { 0.5 } else { 1.0 };
+        }
+    }
+    0.5 * (a.0 + b.0)
 }
 
 /// All combinations of places in a cell, each with the same share.
@@ -215,4 +356,24 @@ fn product(corner: &[f64], shares: impl Fn(usize) -> Vec<f64>) -> Vec<Point> {
     }
     let share = 1.0 / all.len() as f64;
     all.into_iter().map(|places| (places, share)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn crossings_are_found_of_lines_curves_and_jumps() {
+        let at = 0.317_2;
+        let levels: [&dyn Fn(f64) -> f64; 4] = [
+            &|x| at - x,
+            &|x| (x - at) * (1.0 + 9.0 * x * x),
+            &|x| (40.0 * (x - at)).exp() - 1.0,
+            &|x| if x < at { -1.0 } else { 1e6 },
+        ];
+        for level in levels {
+            let found = crossing(&level, [(0.0, level(0.0)), (0.5, level(0.5))]);
+            assert!((found - at).abs() < 1e-9, "{found}");
+        }
+    }
 }

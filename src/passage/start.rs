@@ -3,6 +3,7 @@
 //! Weights are those of interpolation: for a function of the state that is known at the nodes, the weighted sum is its
 //! value at a state, or its average over a density, to sixth order. The outside of the target alone has weights.
 
+use super::tensor::{gathered, whole};
 use crate::MAX_DIMENSION;
 use crate::space::{Axis, CellSpace};
 use crate::system::BoundQuantity;
@@ -20,6 +21,27 @@ pub(super) struct AxisWeights {
     first: usize,
     used: usize,
     weights: [f64; NODES],
+}
+
+impl AxisWeights {
+    /// Nodes with their weights.
+    pub(super) fn each(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let weights = self.weights[..self.used].iter().enumerate();
+        weights.map(|(index, &weight)| (self.first + index, weight))
+    }
+
+    /// The same nodes, each of which counts one.
+    pub(super) fn counting(&self) -> Self {
+        Self {
+            weights: [1.0; NODES],
+            ..*self
+        }
+    }
+}
+
+/// The weights of the nodes of an axis about a coordinate, those that lie evenly about it.
+pub(super) fn about(axis: &Axis, x: f64, nodes: usize) -> AxisWeights {
+    along(axis.count(), place_of(axis, x), 0, nodes)
 }
 
 /// The weights of the nodes of an axis about a cell coordinate, `shift` nodes above those that lie evenly about it.
@@ -130,10 +152,21 @@ pub(super) fn at_nodes_of(
     until: &BoundQuantity,
     field: &[f64],
 ) -> Vec<Option<f64>> {
+    let axes: Vec<Vec<AxisWeights>> = (space.axes().iter().zip(other.axes()))
+        .map(|(own, other)| {
+            let nodes = other.nodes().iter();
+            nodes.map(|&x| about(own, x, NODES)).collect()
+        })
+        .collect();
+    let values = gathered(field, &space.shape(), &axes);
+    let is_whole = whole(kept, &space.shape(), &axes);
     let one = |cell: usize| {
         let state = other.node(cell);
         if until.at(&state) < 0.0 || space.find(&state).is_none() {
             return None;
+        }
+        if is_whole[cell] {
+            return Some(values[cell]);
         }
         let mut value = 0.0;
         around(space, kept, &state, NODES, |cell, weight| {
@@ -145,7 +178,7 @@ pub(super) fn at_nodes_of(
 }
 
 /// The place of a coordinate: of its node on an axis of modes.
-fn place_of(axis: &Axis, x: f64) -> f64 {
+pub(super) fn place_of(axis: &Axis, x: f64) -> f64 {
     if axis.is_modes() {
         let node = axis.nodes().partition_point(|&node| node < x);
         return node as f64 + 0.5;

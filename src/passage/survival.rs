@@ -6,6 +6,7 @@
 //! either has vectors (rational Krylov spaces from both sides; A. Ruhe 1984, E. J. Grimme 1997).
 
 use nalgebra::{DMatrix, DVector};
+use sprs::CsMat;
 
 use super::{PassageError, dot};
 use crate::cancellation::Cancellation;
@@ -50,16 +51,17 @@ pub(super) fn models(
 ) -> Result<([Survival; 2], AbsorbingWork), PassageError> {
     let [first, _] = generators;
     let (mut columns, mut rows) = (Vec::new(), Vec::new());
+    let matrices = generators.map(AbsorbingGenerator::matrix);
     let mut work = AbsorbingWork::default();
     for shift in [0.0].into_iter().chain(shifts(times)) {
         let ends: Vec<f64> = first.ends.iter().map(|rate| rate + shift).collect();
-        let mut matrix = first.matrix.clone();
+        let mut matrix = matrices[0].clone();
         for cell in 0..ends.len() {
             if let Some(rate) = matrix.get_mut(cell, cell) {
                 *rate -= shift;
             }
         }
-        let mut solver = AbsorbingSolver::new(space, *rates, cancellation);
+        let mut solver = AbsorbingSolver::new(space, *rates, cancellation).rough();
         let (stage, mut column) = solver.stage(&matrix, &ends, starts[0])?;
         let mut row = solver.expected(&stage, &first.weights[0])?.values();
         for vector in 0..VECTORS {
@@ -76,8 +78,11 @@ pub(super) fn models(
         work.passes += solver.work.passes;
     }
     // The other scheme is projected on the same vectors: what it changes is right to first order.
-    let model = |generator| Survival::new(generator, starts, columns.clone(), rows.clone());
-    Ok((generators.map(model), work))
+    let model = |number: usize| {
+        let generator = (&matrices[number], generators[number].weights[0].as_slice());
+        Survival::new(generator, starts, columns.clone(), rows.clone())
+    };
+    Ok(([0, 1].map(model), work))
 }
 
 fn normalise(vector: &mut [f64]) {
@@ -95,7 +100,7 @@ pub(super) struct Survival {
 
 impl Survival {
     fn new(
-        generator: &AbsorbingGenerator,
+        generator: (&CsMat<f64>, &[f64]),
         starts: [&[f64]; 2],
         columns: Vec<Vec<f64>>,
         rows: Vec<Vec<f64>>,
@@ -141,7 +146,7 @@ struct ReducedModel {
 impl ReducedModel {
     /// The model of these vectors, or of fewer where it would grow.
     fn new(
-        generator: &AbsorbingGenerator,
+        generator: (&CsMat<f64>, &[f64]),
         starts: [&[f64]; 2],
         columns: Vec<Vec<f64>>,
         rows: Vec<Vec<f64>>,
@@ -173,7 +178,7 @@ impl ReducedModel {
     }
 
     fn of(
-        generator: &AbsorbingGenerator,
+        (matrix, weights): (&CsMat<f64>, &[f64]),
         starts: [&[f64]; 2],
         columns: &[Vec<f64>],
         rows: &[Vec<f64>],
@@ -183,7 +188,7 @@ impl ReducedModel {
             .iter()
             .map(|column| {
                 let mut image = vec![0.0; column.len()];
-                for (rates, &weight) in generator.matrix.outer_iterator().zip(column) {
+                for (rates, &weight) in matrix.outer_iterator().zip(column) {
                     for (row, rate) in rates.iter() {
                         image[row] += rate * weight;
                     }
@@ -202,9 +207,7 @@ impl ReducedModel {
         Some(Self {
             rates,
             starts: [inverse.solve(&tested[0])?, inverse.solve(&tested[1])?],
-            weights: DVector::from_fn(size, |column, _| {
-                dot(&columns[column], &generator.weights[0])
-            }),
+            weights: DVector::from_fn(size, |column, _| dot(&columns[column], weights)),
         })
     }
 

@@ -64,28 +64,33 @@ pub fn timed(
         rates: settings.1,
         cancellation,
     };
-    let (finest, fewer) = rayon::join(
-        || question.solve(1.0),
-        || FEWER.map(|(factor, _)| question.solve(factor)),
+    // The density of the rate on the fewest cells is where the others look for theirs.
+    let [more, fewest] = FEWER;
+    let coarsest = question.solve(fewest.0, None)?;
+    let begun = Some(&coarsest.lasting);
+    let (finest, coarse) = rayon::join(
+        || question.solve(1.0, begun),
+        || question.solve(more.0, begun),
     );
-    let (finest, mut work) = finest?;
+    let (finest, coarse) = (finest?, coarse?);
+    let mut work = finest.work;
+    let finest = finest.both;
     let values = without_dissipation(&finest);
     let mut errors: Vec<f64> = pairs(&finest[0].values, &finest[1].values)
         .map(|(full, half)| DAMPED * (full - half).abs())
         .collect();
     let mut border = finest[0].border;
-    for (solved, (factor, times)) in fewer.into_iter().zip(FEWER) {
-        let (solved, more) = solved?;
-        let others = without_dissipation(&solved);
+    for (solved, (factor, times)) in [(coarse, more), (coarsest, fewest)] {
+        let others = without_dissipation(&solved.both);
         for (error, (value, other)) in errors.iter_mut().zip(pairs(&values, &others)) {
             *error = error.max(times * (value - other).abs());
         }
         let size = f64::powi(factor, BORDER_ORDER);
-        for (error, other) in border.iter_mut().zip(solved[0].border) {
+        for (error, other) in border.iter_mut().zip(solved.both[0].border) {
             *error = error.max(size * other);
         }
-        work.factorisations += more.factorisations;
-        work.passes += more.passes;
+        work.factorisations += solved.work.factorisations;
+        work.passes += solved.work.passes;
     }
     for (error, border) in errors.iter_mut().zip(border) {
         *error += border;

@@ -22,9 +22,6 @@ const SHIFTS: usize = 3;
 /// Relative change by more vectors at which a spectrum stands, and the same relative to its largest value.
 const TOLERANCE: (f64, f64) = (1e-5, 1e-8);
 
-/// Residual, relative to the source, of a vector of the model: products with the generator itself are exact.
-const RESIDUAL: f64 = 1e-10;
-
 /// Frequencies at which that is looked at.
 const LOOKED_AT: usize = 60;
 
@@ -147,8 +144,7 @@ impl Growing<'_> {
         work: &mut AbsorbingWork,
     ) -> Result<Option<f64>, SpectrumError> {
         let (matrix, ends) = ending(&self.grid.full, shift);
-        let solver = AbsorbingSolver::new(&self.grid.space, *rates, cancellation);
-        let mut solver = solver.to_residual(RESIDUAL);
+        let mut solver = AbsorbingSolver::new(&self.grid.space, *rates, cancellation).rough();
         let (stage, _) = solver.stage(&matrix, &ends, &self.deviations[0][0])?;
         let mut chains: Vec<Option<(Vec<f64>, Vec<f64>)>> = Vec::new();
         for (values, deviation) in self.observables.iter().zip(&self.deviations[0]) {

@@ -11,8 +11,9 @@ use crate::passage::{KnownDensity, Passage, PassageError, Timed, timed};
 use crate::stationary::generator::{RateError, RateOptions};
 use crate::system::{PassageQuestion, System};
 
-/// Error at which times stop to be iterated, relative to their sum: below what cells change.
-const TOLERANCE: f64 = 1e-9;
+/// Error at which times stop to be iterated, relative to their sum. Numbers have its square: they are put right by what
+/// equations from both sides leave.
+const TOLERANCE: f64 = 1e-4;
 
 /// Adds the numbers of all passages at a value to a report, with findings where there are none. `density` is
 /// the steady state.

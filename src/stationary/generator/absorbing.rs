@@ -4,16 +4,18 @@
 //! occupies the cells for the times z, Q z = -f, and Σ z is the mean time to its end. A process may last for 10¹² units
 //! of time: then Q is singular to rounding, and z of a plain solve is worth nothing. So one cell that is occupied for
 //! long is held, its balance dropped, and its time follows from e·z = Σf, that everything ends. Nothing in that is a
-//! small difference of large numbers, whether ends are rare or not.
+//! small difference of large numbers, whether ends are rare or not. Where the first solve shows that Q is far from
+//! singular, none is held, which saves the solves that holding takes.
 //!
 //! What another scheme Q' changes follows to first order from both sides, without another factorisation: with w the
-//! expected times to the end from each cell, the mean time changes by w·(Q' - Q) z.
+//! expected times to the end from each cell, the mean time changes by w·(Q' - Q) z. What is left of either equation makes
+//! up for itself the same way.
 
 use sprs::CsMat;
 
 use super::balance::{add_product, dot};
 use super::narrowing;
-use super::newton::{Effort, refined};
+use super::newton::{FirstPass, norm, refined};
 use super::passes::{Seat, run_alone};
 use super::preconditioner::{LARGE, Preconditioner, Structure, estimate_of};
 use super::solver::{largest, shape};
@@ -25,6 +27,10 @@ use crate::space::CellSpace;
 /// Another cell is held where the one that is held is occupied for less than this share of the longest time.
 const LEAST_HELD: f64 = 1e-3;
 
+/// Bytes of factors in double precision, over what is large for iterations, up to which they are made: a pass takes twice
+/// as long as in single precision, and a solve half as many.
+const ROOM: u64 = 4;
+
 /// Cells that are tried.
 const TRIED: usize = 3;
 
@@ -33,8 +39,10 @@ pub(crate) struct AbsorbingSolver<'s> {
     space: &'s CellSpace,
     options: RateOptions,
     preconditioner: Option<Preconditioner>,
-    /// Residual that is enough; see [`Effort`].
-    residual: f64,
+    /// Whether a solve may be left after one pass.
+    is_rough: bool,
+    /// What the first pass through the factors did, where solves may be left after one.
+    first: Option<FirstPass>,
     /// Factorisations that were made, and passes through them.
     pub(crate) work: AbsorbingWork,
     cancellation: Cancellation,
@@ -55,6 +63,12 @@ pub(crate) struct Absorbing<'a> {
     /// Rates at which the process ends.
     ends: &'a [f64],
     held: usize,
+    /// What holding a cell takes; `None` where the one that is held is coupled to no other.
+    visits: Option<Visits>,
+}
+
+/// What holding a cell takes.
+struct Visits {
     /// Times in all cells a unit of time in the held one, from visits that begin there.
     unit: Vec<f64>,
     /// Probability that the process ends before it is in the held cell, from each cell; zero from that cell.
@@ -63,7 +77,7 @@ pub(crate) struct Absorbing<'a> {
 
 /// What a process is expected to gather on its way from each cell to its end.
 pub(crate) struct Expected {
-    /// From the held cell.
+    /// From the held cell; zero where none is.
     at_held: f64,
     /// From each cell, less than from the held one: known to more digits than the difference.
     beside: Vec<f64>,
@@ -81,6 +95,25 @@ impl Expected {
         &self.beside
     }
 
+    /// w·Q z for a generator that is given by its rates (row, column, rate), any number of them for a place, and the
+    /// rates of its ends.
+    pub(crate) fn through(
+        &self,
+        rates: &[(usize, usize, f64)],
+        ends: &[f64],
+        times: &[f64],
+    ) -> f64 {
+        // Columns sum to minus the ends, so that the held cell's value meets what ends alone.
+        let within = rates.iter();
+        let within = within.map(|&(row, column, rate)| self.beside[row] * rate * times[column]);
+        within.sum::<f64>() - self.at_held * dot(ends, times)
+    }
+
+    /// The sum of what is expected over a start.
+    pub(crate) fn over(&self, start: &[f64]) -> f64 {
+        dot(&self.beside, start) + self.at_held * start.iter().sum::<f64>()
+    }
+
     /// What two starts, each with Σ = 1, differ by.
     pub(crate) fn difference(&self, one: &[f64], other: &[f64]) -> f64 {
         dot(&self.beside, one) - dot(&self.beside, other)
@@ -88,21 +121,16 @@ impl Expected {
 }
 
 impl Absorbing<'_> {
-    /// w·(Q' - Q) z for another matrix of the same pattern or not, with the rates of its ends.
-    pub(crate) fn change(
-        &self,
-        (matrix, ends): (&CsMat<f64>, &[f64]),
-        expected: &Expected,
-        times: &[f64],
-    ) -> f64 {
-        // Columns sum to minus the ends, so that the held cell's value meets what ends alone.
-        let within = |matrix: &CsMat<f64>| {
-            let mut out = vec![0.0; times.len()];
-            add_product(matrix, times, &mut out);
-            dot(&out, &expected.beside)
-        };
-        let out = dot(ends, times) - dot(self.ends, times);
-        within(matrix) - within(self.matrix) - expected.at_held * out
+    /// Q z.
+    pub(crate) fn balance(&self, times: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; times.len()];
+        add_product(self.matrix, times, &mut out);
+        out
+    }
+
+    /// w·Q z, with the product Q z at hand.
+    pub(crate) fn of_balance(&self, balance: &[f64], expected: &Expected, times: &[f64]) -> f64 {
+        dot(balance, &expected.beside) - expected.at_held * dot(self.ends, times)
     }
 }
 
@@ -117,18 +145,16 @@ impl<'s> AbsorbingSolver<'s> {
             space,
             options,
             preconditioner: None,
-            residual: 0.0,
+            is_rough: false,
+            first: None,
             work: AbsorbingWork::default(),
             cancellation: cancellation.clone(),
         }
     }
 
-    /// The solver for vectors of which a small residual (in L1, relative to the source) is enough: it takes one pass
-    /// where others take two. Where a process ends at the rate s everywhere, a solution is off by no more than its
-    /// residual over s.
-    #[must_use]
-    pub(crate) fn to_residual(mut self, residual: f64) -> Self {
-        self.residual = residual;
+    /// The same, with solves that are left after one pass where the first shows that factors are good enough for that.
+    pub(crate) fn rough(mut self) -> Self {
+        self.is_rough = true;
         self
     }
 
@@ -148,17 +174,44 @@ impl<'s> AbsorbingSolver<'s> {
         shape(cells, "ends", ends.len())?;
         shape(cells, "start", start.len())?;
         let mut held = match &self.preconditioner {
+            Some(kept) if is_alone(matrix, ends, kept.held) => {
+                let stage = Absorbing {
+                    matrix,
+                    ends,
+                    held: kept.held,
+                    visits: None,
+                };
+                let times = self.times(&stage, start)?;
+                return Ok((stage, times));
+            }
             Some(kept) => kept.held,
-            None => self.factorise(matrix, largest(start).0)?,
+            None => {
+                if let Some(found) = self.free(matrix, ends, start)? {
+                    return Ok(found);
+                }
+                self.factorise(matrix, largest(start).0)?
+            }
         };
         let mut tried = 1;
         loop {
-            let mut stage = self.unit(matrix, ends, held)?;
+            let unit = self.unit(matrix, held)?;
+            let mut stage = Absorbing {
+                matrix,
+                ends,
+                held,
+                visits: Some(Visits {
+                    unit,
+                    ended: Vec::new(),
+                }),
+            };
             let times = self.times(&stage, start)?;
             // The cell that is held may turn out to be occupied for a short time only.
             let (longest, time) = largest(&times);
             if times[held].abs() >= LEAST_HELD * time || tried == TRIED {
-                stage.ended = self.reduced(matrix, held, &without(ends, held), true)?;
+                let ended = self.reduced(matrix, held, &without(ends, held), true)?;
+                if let Some(visits) = &mut stage.visits {
+                    visits.ended = ended;
+                }
                 return Ok((stage, times));
             }
             held = self.factorise(matrix, longest)?;
@@ -166,13 +219,54 @@ impl<'s> AbsorbingSolver<'s> {
         }
     }
 
-    fn unit<'a>(
+    /// A stage at which no cell is held but one that is coupled to none, with the times for a start; `None` where there
+    /// is no such cell, factors are in single precision, or Q is too near to a singular matrix for one pass a solve.
+    fn free<'a>(
         &mut self,
         matrix: &'a CsMat<f64>,
         ends: &'a [f64],
-        held: usize,
-    ) -> Result<Absorbing<'a>, RateError> {
-        let mut source = vec![0.0; ends.len()];
+        start: &[f64],
+    ) -> Result<Option<(Absorbing<'a>, Vec<f64>)>, RateError> {
+        let alone = (0..ends.len()).find(|&cell| is_alone(matrix, ends, cell));
+        let Some(held) = alone.filter(|_| self.is_rough) else {
+            return Ok(None);
+        };
+        if self.method(&self.structure(matrix))? != RateMethod::Lu {
+            return Ok(None);
+        }
+        self.factorise(matrix, held)?;
+        let Some(kept) = &self.preconditioner else {
+            return Ok(None);
+        };
+        let source: Vec<f64> = start.iter().map(|value| -value).collect();
+        let mut times = kept.apply_one(&source);
+        let mut rest = vec![0.0; source.len()];
+        add_product(matrix, &times, &mut rest);
+        let pairs = rest.iter_mut().zip(&source);
+        pairs.for_each(|(product, source)| *product = source - *product);
+        let correction = kept.apply_one(&rest);
+        self.work.passes += 2;
+        let first = FirstPass {
+            contraction: norm(&correction) / norm(&times),
+            left: norm(&rest) / norm(&source),
+        };
+        if !first.is_enough(0.0, self.options.tolerance) {
+            return Ok(None);
+        }
+        self.first = Some(first);
+        let pairs = times.iter_mut().zip(correction);
+        pairs.for_each(|(value, correction)| *value += correction);
+        let stage = Absorbing {
+            matrix,
+            ends,
+            held,
+            visits: None,
+        };
+        Ok(Some((stage, times)))
+    }
+
+    fn unit(&mut self, matrix: &CsMat<f64>, held: usize) -> Result<Vec<f64>, RateError> {
+        let mut source = vec![0.0; self.space.n_cells()];
         if let Some(column) = matrix.outer_view(held) {
             for (row, rate) in column.iter() {
                 source[row] = -rate;
@@ -181,34 +275,38 @@ impl<'s> AbsorbingSolver<'s> {
         source[held] = 0.0;
         let mut unit = self.reduced(matrix, held, &source, false)?;
         unit[held] = 1.0;
-        Ok(Absorbing {
-            matrix,
-            ends,
-            held,
-            unit,
-            ended: Vec::new(),
-        })
+        Ok(unit)
     }
 
-    /// Factorises in double precision where that is small, in single precision elsewhere; gives the cell that is held.
-    fn factorise(&mut self, matrix: &CsMat<f64>, held: usize) -> Result<usize, RateError> {
-        let structure = Structure {
+    /// Double precision where that is not too large, with which one pass does for a solve; single precision elsewhere.
+    fn method(&self, structure: &Structure) -> Result<RateMethod, RateError> {
+        let limit = self.options.memory_limit_bytes;
+        let of = |method| estimate_of(self.space, structure, limit, Some(method));
+        let room = if self.is_rough { ROOM * LARGE } else { LARGE };
+        match of(RateMethod::Lu) {
+            Ok(plan) if plan.factor_bytes <= room => Ok(plan.method),
+            _ => Ok(of(RateMethod::LuSingle)?.method),
+        }
+    }
+
+    fn structure(&self, matrix: &CsMat<f64>) -> Structure {
+        Structure {
             reach: narrowing::reach(self.space, matrix),
             folded: None,
-        };
-        let limit = self.options.memory_limit_bytes;
-        let of = |method| estimate_of(self.space, &structure, limit, Some(method));
-        let plan = match of(RateMethod::Lu) {
-            Ok(plan) if plan.factor_bytes <= LARGE => plan,
-            _ => of(RateMethod::LuSingle)?,
-        };
+        }
+    }
+
+    /// Factorises; gives the cell that is held.
+    fn factorise(&mut self, matrix: &CsMat<f64>, held: usize) -> Result<usize, RateError> {
+        let structure = self.structure(matrix);
+        let method = self.method(&structure)?;
         let old = self.preconditioner.take();
         let (space, cancellation) = (self.space, &self.cancellation);
-        let method = plan.method;
         let new = Preconditioner::new(space, &structure, method, matrix, held, old, cancellation)?;
         self.work.factorisations += 1;
         let held = new.held;
         self.preconditioner = Some(new);
+        self.first = None;
         Ok(held)
     }
 
@@ -226,9 +324,12 @@ impl<'s> AbsorbingSolver<'s> {
         source[held] = 0.0;
         // What is beside the visits of the held cell.
         let mut times = self.reduced(stage.matrix, held, &source, false)?;
+        let Some(Visits { unit, .. }) = &stage.visits else {
+            return Ok(times);
+        };
         let ended = start.iter().sum::<f64>() - dot(stage.ends, &times);
-        let time = ended / dot(stage.ends, &stage.unit);
-        let pairs = times.iter_mut().zip(&stage.unit);
+        let time = ended / dot(stage.ends, unit);
+        let pairs = times.iter_mut().zip(unit);
         pairs.for_each(|(value, unit)| *value += time * unit);
         Ok(times)
     }
@@ -247,15 +348,21 @@ impl<'s> AbsorbingSolver<'s> {
         let (matrix, held) = (stage.matrix, stage.held);
         // Before the held cell is reached.
         let gathered = self.reduced(matrix, held, &without(gain, held), true)?;
+        let Some(Visits { ended, .. }) = &stage.visits else {
+            return Ok(Expected {
+                at_held: 0.0,
+                beside: gathered,
+            });
+        };
         let from_held = |values: &[f64]| -> f64 {
             let column = matrix.outer_view(held);
             let terms =
                 column.map(|column| column.iter().map(|(row, rate)| rate * values[row]).sum());
             terms.unwrap_or(0.0)
         };
-        let ending = stage.ends[held] + from_held(&stage.ended);
+        let ending = stage.ends[held] + from_held(ended);
         let at_held = (gain[held] + from_held(&gathered)) / ending;
-        let pairs = gathered.iter().zip(&stage.ended);
+        let pairs = gathered.iter().zip(ended);
         Ok(Expected {
             at_held,
             beside: pairs.map(|(gain, end)| gain - end * at_held).collect(),
@@ -288,11 +395,8 @@ impl<'s> AbsorbingSolver<'s> {
             out
         };
         let seat = Seat::default();
-        let effort = Effort {
-            tolerance: self.options.tolerance,
-            limit: self.options.max_iterations,
-            residual: self.residual,
-        };
+        let effort = (self.options.tolerance, self.options.max_iterations);
+        let source = (source, self.first);
         let work = refined(&seat, &operator, source, effort, &self.cancellation);
         let apply = |rest: &[f64]| {
             if is_transposed {
@@ -302,10 +406,19 @@ impl<'s> AbsorbingSolver<'s> {
             }
         };
         let found = run_alone(apply, &seat, work)?;
-        let (solution, used) = found.ok_or(RateError::Sensitivity)?;
-        self.work.passes += used;
-        Ok(solution)
+        let found = found.ok_or(RateError::Sensitivity)?;
+        self.work.passes += found.used;
+        if self.is_rough {
+            self.first = self.first.or(found.first);
+        }
+        Ok(found.solution)
     }
+}
+
+/// Whether a cell is coupled to no other, and nothing ends there: one inside a target.
+fn is_alone(matrix: &CsMat<f64>, ends: &[f64], cell: usize) -> bool {
+    let column = matrix.outer_view(cell);
+    ends[cell] == 0.0 && column.is_some_and(|column| column.nnz() == 1)
 }
 
 /// The right side of what is gathered before a cell is reached.

@@ -8,6 +8,8 @@ use super::krylov::{Limits, Operator, gmres};
 use super::passes::Seat;
 use crate::cancellation::{Cancellation, Cancelled};
 
+/// How much worse than for one source a first pass may be for another that leaves the same residual.
+const OTHER_SOURCES: f64 = 10.0;
 /// Contraction per iteration below which plain refinement needs no GMRES.
 const FAST: f64 = 0.1;
 /// Least reduction asked of one run of GMRES: beyond, rounding of its basis shows.
@@ -158,55 +160,78 @@ pub(super) async fn linear(
     Ok(None)
 }
 
-/// How exact a solve is to be.
+/// A solution of [`refined`].
+pub(super) struct Refined {
+    pub(super) solution: Vec<f64>,
+    /// Passes.
+    pub(super) used: usize,
+    /// What its first pass did.
+    pub(super) first: Option<FirstPass>,
+}
+
+/// What a first pass through factors did for one source, which tells of others.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Effort {
-    /// Error in L1, relative to the solution.
-    pub(super) tolerance: f64,
-    /// Most passes.
-    pub(super) limit: usize,
-    /// Residual in L1, relative to the source, at which no further pass is made; 0 where the error alone counts.
-    pub(super) residual: f64,
+pub(super) struct FirstPass {
+    /// Size of the first correction over that of the solution.
+    pub(super) contraction: f64,
+    /// Residual after the pass over the source.
+    pub(super) left: f64,
+}
+
+impl FirstPass {
+    /// Whether a first pass alone will do for another source, of which it leaves so much.
+    pub(super) fn is_enough(self, left: f64, tolerance: f64) -> bool {
+        let worse = (left / self.left.max(f64::EPSILON)).max(1.0);
+        OTHER_SOURCES * worse * self.contraction <= tolerance
+    }
 }
 
 /// Solves A x = source with the factors of A itself, which refinement makes exact: as long as each correction is much
 /// smaller than the one before, the next one is as much smaller again and need not be made. Where corrections do not
-/// shrink so, [`linear`] goes on.
+/// shrink so, [`linear`] goes on. Where `known` says what one pass does with these factors, and leaves no more than that
+/// of this source, one is enough.
 ///
 /// # Errors
 /// [`Cancelled`].
 pub(super) async fn refined(
     seat: &Seat,
     operator: &Operator<'_>,
-    source: &[f64],
-    Effort {
-        tolerance,
-        limit,
-        residual,
-    }: Effort,
+    (source, known): (&[f64], Option<FirstPass>),
+    (tolerance, limit): (f64, usize),
     cancellation: &Cancellation,
-) -> Result<Option<(Vec<f64>, usize)>, Cancelled> {
+) -> Result<Option<Refined>, Cancelled> {
     let mut solution = seat.pass(source.to_vec()).await;
     let (mut used, mut before) = (1, norm(&solution));
+    let mut first = None;
     while used < limit {
         cancellation.check()?;
         let mut rest = source.to_vec();
         let product = operator(&solution);
         rest.iter_mut().zip(product).for_each(|(a, b)| *a -= b);
-        if norm(&rest) <= residual * norm(source) {
-            return Ok(Some((solution, used)));
+        let left = norm(&rest) / norm(source);
+        if used == 1 && known.is_some_and(|known| known.is_enough(left, tolerance)) {
+            return Ok(Some(Refined {
+                solution,
+                used,
+                first: known,
+            }));
         }
         let correction = seat.pass(rest).await;
         used += 1;
         let size = norm(&correction);
         let contraction = size / before;
+        first = first.or(Some(FirstPass { contraction, left }));
         // What is not a number contracts neither.
         if !(contraction <= FAST || size == 0.0) {
             break;
         }
         add(&mut solution, &correction);
         if size * contraction <= tolerance * norm(&solution) {
-            return Ok(Some((solution, used)));
+            return Ok(Some(Refined {
+                solution,
+                used,
+                first,
+            }));
         }
         before = size;
     }
@@ -214,7 +239,11 @@ pub(super) async fn refined(
     let start = start.then_some(solution);
     let left = (tolerance, limit.saturating_sub(used));
     let found = linear(seat, operator, (source, start), left, cancellation).await?;
-    Ok(found.map(|(solution, more)| (solution, used + more)))
+    Ok(found.map(|(solution, more)| Refined {
+        solution,
+        used: used + more,
+        first,
+    }))
 }
 
 fn add(mass: &mut [f64], step: &[f64]) {
