@@ -6,7 +6,7 @@ use super::SourceError;
 #[derive(Debug, thiserror::Error)]
 pub enum SweepError {
     /// A parameter value that the source does not accept.
-    #[error("{parameter} = {value}: {source}")]
+    #[error("{parameter} = {}: {source}", short(*.value))]
     Source {
         /// The swept parameter.
         parameter: String,
@@ -26,4 +26,12 @@ pub enum SweepError {
     /// The observer could not go on.
     #[error("{0}")]
     Observer(Box<dyn std::error::Error + Send + Sync>),
+}
+
+/// A number in few digits: by its power of ten where it has many.
+fn short(value: f64) -> String {
+    match value.abs() {
+        0.0 | 1e-5..1e16 => value.to_string(),
+        _ => format!("{value:e}"),
+    }
 }

@@ -1,6 +1,6 @@
 //! A density that lasts, from one grid to another: where the rate is looked for from.
 
-use super::start::place_of;
+use super::nodes::place_of;
 use crate::MAX_DIMENSION;
 use crate::space::CellSpace;
 

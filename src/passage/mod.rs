@@ -36,6 +36,7 @@
 //! | part | file |
 //! | --- | --- |
 //! | cells, graded toward a barrier of an oscillator | `cells.rs` |
+//! | weights of interpolation from nodes | `nodes.rs` |
 //! | weights of a start | `start.rs` |
 //! | what is known of the steady state, and what its errors do | `density_start.rs` |
 //! | masses of a density in a region | `spread.rs` |
@@ -49,6 +50,7 @@
 mod cells;
 mod density_start;
 mod lasting;
+mod nodes;
 mod rate;
 mod solve;
 mod spread;

@@ -4,7 +4,8 @@
 //! Cells that the region's border cuts are integrated up to it: along the axis that is steepest across the border to
 //! the place where each line crosses it, over lines that lie close to each other.
 
-use super::start::{AtCoordinate as _, AxisWeights, NODES, about, add_state, along, each};
+use super::nodes::{AxisWeights, NODES, about, along, each};
+use super::start::{AtCoordinate as _, add_state};
 use super::tensor::{gathered, scattered, whole};
 use crate::MAX_DIMENSION;
 use crate::space::CellSpace;
@@ -300,41 +301,31 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
 const WHOLE: [(f64, f64); 2] = [(0.0, 0.5), (0.5, 1.0)];
 
 /// Where a level changes its sign between two places, by secants of which an end that stays counts half (Illinois), and
-/// halving where the level jumps.
+/// by halving after every step that narrows by less than that, as where the level jumps.
 fn crossing(level: &impl Fn(f64) -> f64, [mut a, mut b]: [(f64, f64); 2]) -> f64 {
-    let mut stayed = 0_i32;
+    let (mut stayed, mut is_slow) = (0_i32, false);
     for _ in 0..NARROWING {
-        if (b.0 - a.0).abs() <= NARROW {
+        let width = (b.0 - a.0).abs();
+        if width <= NARROW {
             break;
         }
-        let share = a.1 / (a.1 - b.1);
-        let share = if share.is_finite() && stayed.abs() < 4 {
-            share
-        } else {
-            0.5
-        };
-        let at = a.0 + share * (b.0 - a.0);
+        let secant = a.1 / (a.1 - b.1);
+        let by_secant = secant.is_finite() && !is_slow;
+        let at = a.0 + if by_secant { secant } else { 0.5 } * (b.0 - a.0);
         let value = level(at);
         if value == 0.0 {
             return at;
         }
         if (value < 0.0) == (a.1 < 0.0) {
-            stayed = if stayed.abs() < 4 {
-                stayed.max(0) + 1
-            } else {
-                0
-            };
+            stayed = stayed.max(0) + 1;
             a = (at, value);
             b.1 *= if stayed > 1 { 0.5 } else { 1.0 };
         } else {
-            stayed = if stayed.abs() < 4 {
-                stayed.min(0) - 1
-            } else {
-                0
-            };
+            stayed = stayed.min(0) - 1;
             b = (at, value);
             a.1 *= if stayed < -1 { 0.5 } else { 1.0 };
         }
+        is_slow = (b.0 - a.0).abs() > 0.5 * width;
     }
     0.5 * (a.0 + b.0)
 }

@@ -1,6 +1,6 @@
 //! Interpolation on all points of a grid at once: axis by axis, each with the weights of its own nodes.
 
-use super::start::AxisWeights;
+use super::nodes::AxisWeights;
 
 /// A field at the points of a grid, from its values at the nodes of another: for each axis one set of weights a point.
 pub(super) fn gathered(values: &[f64], shape: &[usize], axes: &[Vec<AxisWeights>]) -> Vec<f64> {
@@ -66,7 +66,7 @@ pub(super) fn whole(kept: &[bool], shape: &[usize], axes: &[Vec<AxisWeights>]) -
 
 #[cfg(test)]
 mod tests {
-    use super::super::start::{NODES, about};
+    use super::super::nodes::{NODES, about};
     use super::*;
     use crate::space::{Axis, CellSpace};
 

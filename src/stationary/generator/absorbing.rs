@@ -8,8 +8,8 @@
 //! singular, none is held, which saves the solves that holding takes.
 //!
 //! What another scheme Q' changes follows to first order from both sides, without another factorisation: with w the
-//! expected times to the end from each cell, the mean time changes by w·(Q' - Q) z. What is left of either equation makes
-//! up for itself the same way.
+//! expected times to the end from each cell, the mean time changes by w·(Q' - Q) z. What is left of either equation
+//! makes up for itself the same way.
 
 use sprs::CsMat;
 
@@ -27,8 +27,8 @@ use crate::space::CellSpace;
 /// Another cell is held where the one that is held is occupied for less than this share of the longest time.
 const LEAST_HELD: f64 = 1e-3;
 
-/// Bytes of factors in double precision, over what is large for iterations, up to which they are made: a pass takes twice
-/// as long as in single precision, and a solve half as many.
+/// Bytes of factors in double precision, over what is large for iterations, up to which they are made: a pass takes
+/// twice as long as in single precision, and a solve half as many.
 const ROOM: u64 = 4;
 
 /// Cells that are tried.

@@ -188,8 +188,8 @@ impl FirstPass {
 
 /// Solves A x = source with the factors of A itself, which refinement makes exact: as long as each correction is much
 /// smaller than the one before, the next one is as much smaller again and need not be made. Where corrections do not
-/// shrink so, [`linear`] goes on. Where `known` says what one pass does with these factors, and leaves no more than that
-/// of this source, one is enough.
+/// shrink so, [`linear`] goes on. Where `known` says what one pass does with these factors, and leaves no more than
+/// that of this source, one is enough.
 ///
 /// # Errors
 /// [`Cancelled`].
