@@ -77,11 +77,14 @@ fn section(file: &StartingFile, images: &Path) -> Result<String, Box<dyn std::er
         )?;
     }
     let figures = Figures::of_sweep(&found, file.title(), &[]);
-    let name = format!("diagram_{}", family.axis(0));
+    let (name, drawn) = match family.spectrum() {
+        Some(_) => (format!("spectrogram_{}", family.axis(0)), "Spectrum"),
+        None => (format!("diagram_{}", family.axis(0)), "Density"),
+    };
     for figure in figures.draw(&name)? {
         let picture = format!("{}.svg", file.name);
         std::fs::write(images.join(&picture), figure.svg())?;
-        let words = format!("Density of {} against {parameter}", family.axis(0));
+        let words = format!("{drawn} of {} against {parameter}", family.axis(0));
         writeln!(text, "\n![{words}](images/gallery/{picture})")?;
     }
     writeln!(text, "\n`pbif sweep sweeps/gallery/{}.toml`", file.name)?;

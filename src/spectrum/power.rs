@@ -171,17 +171,18 @@ pub fn rate_of_change(
 const UNKNOWN: f64 = 0.2;
 
 fn features(known: &[Known]) -> Features {
-    let told = |(value, error): Known| (error <= UNKNOWN * value.abs()).then_some((value, error));
-    let correlation_time = told(known[2]);
+    let told = |(value, error): Known, size: f64| {
+        let is_known = error <= UNKNOWN * value.abs().max(size);
+        is_known.then_some((value, error))
+    };
+    let correlation_time = told(known[2], 0.0);
     Features {
-        peak: told(known[0]),
-        width: told(known[1]),
+        peak: told(known[0], 0.0),
+        width: told(known[1], 0.0),
         correlation_time,
-        // These two may be near zero: the first is over S(0), the second over one.
-        curvature: correlation_time
-            .and(Some(known[3]))
-            .filter(|known| known.1.is_finite()),
-        rise: Some(known[4]).filter(|known| known.1 <= UNKNOWN),
+        // These two may be near zero: their sizes are those of a Lorentzian of the same correlation time, and one.
+        curvature: correlation_time.and_then(|(time, _)| told(known[3], 2.0 * time * time)),
+        rise: told(known[4], 1.0),
     }
 }
 

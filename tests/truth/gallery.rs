@@ -190,6 +190,26 @@ fn the_colour_of_noise_alone_splits_a_peak() {
     assert_located(&found, "x", 0.191_369, 1e-4);
 }
 
+#[test]
+fn lines_of_a_double_well_come_and_go_whatever_the_cells() {
+    // 208 cells an axis on the range that trajectories find: 0.117610 ± 1.2e-5 and 0.2516267 ± 9.3e-6.
+    let settings = "sweep.from=0.1 sweep.to=0.3 sweep.points=9 cells.x.count=90 cells.v.count=96";
+    let found = run("double_well_spectrum", settings);
+    let rows = found.labels.iter().filter_map(|row| row.spectral_change());
+    let rows: Vec<_> = rows.collect();
+    assert_eq!(rows.len(), 2, "{rows:?}");
+    for (row, (value, rises)) in rows
+        .into_iter()
+        .zip([(0.117_610, false), (0.251_627, true)])
+    {
+        assert!(
+            (row.value - value).abs() <= row.error && row.error < 2e-3,
+            "{row:?}"
+        );
+        assert_eq!(row.rises, rises);
+    }
+}
+
 /// A measure of a solved value, with its error.
 fn measured(point: &Point, name: &str) -> (f64, f64) {
     let mut measures = point.report.measures.iter();
