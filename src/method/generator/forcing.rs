@@ -1,5 +1,5 @@
 //! How states answer to a periodic forcing: the amplitude with which the mean of a state moves at the forcing's
-//! frequency, 2 |<x>_1| with <x>_1 the average of the mean times e^{-2πis} over the phase s; and its square over that
+//! frequency, 2 |⟨x⟩₁| with ⟨x⟩₁ the average of the mean times e^{-2πis} over the phase s; and its square over that
 //! of the forcing, the spectral amplification of stochastic resonance (P. Jung and P. Hänggi, *Phys. Rev. A* 44,
 //! 8032, 1991). The forcing's amplitude is that of the first harmonic of the drift, where it is the same everywhere
 //! and on one axis only.

@@ -20,6 +20,9 @@ const UNKNOWN: f64 = 0.1;
 /// Highest frequency that is looked at where none is given, over the rate at which states change.
 const HIGHEST: f64 = 6.0;
 
+/// A function of the state with values of all parameters.
+type BoundFunction<'a> = Box<dyn Fn(&[f64]) -> f64 + Sync + 'a>;
+
 /// Adds the spectra that a family asks for to a report; `unknowns` are those of the steady state, where there is one.
 ///
 /// # Errors
@@ -40,7 +43,7 @@ pub(super) fn add_spectra(
         return Ok(());
     };
     let bound = bound(&source.problem, question, value)?;
-    let functions: Vec<Box<dyn Fn(&[f64]) -> f64 + Sync>> = question
+    let functions: Vec<BoundFunction<'_>> = question
         .observables
         .iter()
         .zip(&bound)
@@ -135,10 +138,7 @@ fn bound(
     all.collect()
 }
 
-fn function<'a>(
-    observable: &Fluctuating,
-    bound: Option<&'a BoundQuantity>,
-) -> Box<dyn Fn(&[f64]) -> f64 + Sync + 'a> {
+fn function<'a>(observable: &Fluctuating, bound: Option<&'a BoundQuantity>) -> BoundFunction<'a> {
     match (observable, bound) {
         (Fluctuating::Axis(axis, _), _) => {
             let axis = *axis;

@@ -59,9 +59,9 @@ pub(super) fn read(
             .iter()
             .filter_map(|name| number_of(reader, family, &mut observables, name, place))
             .collect();
-        match numbers.as_slice() {
-            &[one] if names.len() == 1 => pairs.push((one, one)),
-            &[one, other] => pairs.push((one, other)),
+        match numbers[..] {
+            [one] if names.len() == 1 => put(&mut pairs, (one, one)),
+            [one, other] => put(&mut pairs, (one, other)),
             _ => {}
         }
     }
@@ -73,7 +73,6 @@ pub(super) fn read(
             found.remedy("name an axis or a quantity, or leave `[spectrum]` out"),
         );
     }
-    pairs.dedup();
     Some(SpectrumQuestion {
         observables,
         pairs,
@@ -86,6 +85,13 @@ pub(super) fn read(
         lag: asked.lag,
     })
     .filter(|_| !texts.is_empty())
+}
+
+/// Adds a pair that is not there yet.
+fn put(pairs: &mut Vec<(usize, usize)>, pair: (usize, usize)) {
+    if !pairs.contains(&pair) {
+        pairs.push(pair);
+    }
 }
 
 /// The number of an observable among those that are known so far.
