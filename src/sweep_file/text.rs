@@ -78,7 +78,7 @@ pub(super) fn read(file: &Path) -> Result<Text, Report> {
     });
     read.map_err(|error| {
         let title = match file.read_link() {
-            Ok(target) if !file.exists() => {
+            Ok(target) if error.kind() == std::io::ErrorKind::NotFound => {
                 let target = target.display();
                 format!("the sweep file `{name}` is a link that leads nowhere, to `{target}`")
             }
