@@ -22,7 +22,7 @@ const HALVINGS: usize = 80;
 /// A crossing of a level.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LevelCrossing {
-    /// `LV` and its ordinal, `DB` for a D-bifurcation.
+    /// `LV` and its ordinal, `DB` for a D-bifurcation, `SB` for a change of a power spectrum.
     pub label: String,
     /// The measure and its level.
     pub asked: MeasureLevel,
