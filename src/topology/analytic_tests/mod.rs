@@ -4,7 +4,7 @@ mod births;
 mod plane;
 
 use super::*;
-use crate::density::{Density, Observable};
+use crate::density::{Density, Observable, Variants};
 use crate::space::{Axis, Grading};
 
 /// Gauss points and weights on [-1, 1] for averages over a cell: exact to degree 5.
@@ -57,7 +57,7 @@ fn exact(axes: Vec<Axis>, values: Vec<f64>) -> EstimatedDensity {
     EstimatedDensity {
         observable,
         standard_error: vec![0.0; density.values.len()],
-        variants: crate::density::Variants::None,
+        variants: Variants::None,
         structure: crate::density::Structure::default(),
         negligible: crate::density::NEGLIGIBLE,
         density,
@@ -172,4 +172,21 @@ fn a_peak_at_the_end_of_the_range_counts() {
     assert_eq!(detection.signature, signature(2, 0));
     let at_end = |f: &&Feature| f.kind == FeatureKind::Peak && f.position[0] < axis.width(0);
     assert_eq!(detection.features.iter().filter(at_end).count(), 1);
+}
+
+/// Away from its edge the density is as smooth as can be; beyond it nothing is left within two cells.
+#[test]
+fn a_peak_beside_a_steep_edge_counts_wherever_the_edge_lies_in_its_cell() {
+    let axis = uniform(2.65, 60);
+    for step in 0..20 {
+        let edge = 1.72 + axis.width(0) * f64::from(step) / 20.0;
+        let hump = |x: f64| (-(x - 0.2).powi(2)).exp();
+        let shore = |x: f64| 0.5 * (1.0 - ((x - edge) / 0.04).tanh());
+        let p = |x: f64| (hump(x) + 0.8 * (-(x - 1.9).powi(2) / 0.5).exp()) * shore(x);
+        let mut estimated = marginal(&axis, p);
+        estimated.standard_error.fill(1e-3);
+        estimated.variants = Variants::Scheme(estimated.density.values.clone());
+        let found = detect(&estimated).signature;
+        assert_eq!(found, signature(2, 0), "edge at {edge}");
+    }
 }
