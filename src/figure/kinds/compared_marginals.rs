@@ -15,13 +15,13 @@ use crate::figure::canvas::legend::{self, Legend, Sample};
 use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
 use crate::figure::canvas::style::{ERROR_LINE, INK, MARGIN, Stroke, TEXT};
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::caption;
 use crate::figure::parts::joint_map::with_letter;
 use crate::figure::parts::names;
 use crate::figure::parts::table::{self, number};
 use crate::figure::parts::view;
 use crate::figure::parts::view::View;
+use crate::figure::print::{Figure, Print};
 
 /// Size of a panel, in pixels.
 const PANEL: (f64, f64) = (270.0, 165.0);

@@ -14,10 +14,10 @@ use crate::figure::canvas::legend::{Legend, Sample};
 use crate::figure::canvas::page::{Heading, Lettering, Page, Panel, Rectangle, Shape, small};
 use crate::figure::canvas::style::{BIFURCATION, Colour, GREY, INK, MARGIN, PAPER, Stroke};
 use crate::figure::canvas::symbols;
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::crossed::Crossed;
 use crate::figure::parts::names;
 use crate::figure::parts::names::symbol_of;
+use crate::figure::print::{Figure, Print};
 use crate::system::Family;
 use crate::topology::IndicatorKind;
 

@@ -7,8 +7,8 @@ use crate::figure::canvas::legend::{Legend, Sample};
 use crate::figure::canvas::page::{Heading, Page, Rectangle, Shape};
 use crate::figure::canvas::style::{INK, MARGIN, Stroke};
 use crate::figure::canvas::symbols;
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::caption::{number, version};
+use crate::figure::print::{Figure, Print};
 use crate::system::friction::pulled::{
     MOST_CYCLES, Pulled, closes, cycle, has_friction, steady_sliding, yielding_distance,
 };

@@ -14,12 +14,12 @@ use crate::figure::canvas::legend::{Legend, Sample};
 use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape};
 use crate::figure::canvas::style::{Colour, MARGIN, PNG_SCALE};
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::along::parameter_range;
 use crate::figure::parts::bifurcations::Labels;
 use crate::figure::parts::caption;
 use crate::figure::parts::names;
 use crate::figure::parts::table::{self, number as number_of};
+use crate::figure::print::{Figure, Print};
 
 /// Size of the map on a page of its own width, in pixels, and that width.
 const MAP: (f64, f64) = (390.0, 220.0);

@@ -16,11 +16,11 @@ use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape, small};
 use crate::figure::canvas::style::{BLANK, Colour, INK, MARGIN, PAPER, Stroke, TICK_TEXT};
 use crate::figure::canvas::symbols;
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::crossed::Crossed;
 use crate::figure::parts::inset;
 use crate::figure::parts::names::{self, symbol_of};
 use crate::figure::parts::region_room::Room;
+use crate::figure::print::{Figure, Print};
 use crate::system::Family;
 use crate::topology::Signature;
 

@@ -11,10 +11,10 @@ use crate::figure::canvas::legend::{Legend, Sample};
 use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Heading, Page, Rectangle, Shape};
 use crate::figure::canvas::style::{MARGIN, Stroke, TEXT};
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::joint_map::{with_letter, write_above};
 use crate::figure::parts::view::View;
 use crate::figure::parts::{caption, names, table, view};
+use crate::figure::print::{Figure, Print};
 use crate::system::Family;
 
 /// Height of a panel on a page of its own width, in pixels, and that width.

@@ -5,10 +5,10 @@ use super::{Drawn, Kind, Sketch};
 use crate::continuation::{Label, LevelCrossing, SweepResult};
 use crate::figure::canvas::style::{FRAME_LINE, GREY, Stroke};
 use crate::figure::canvas::symbols;
-use crate::figure::figures::Print;
 use crate::figure::parts::along::{self, Curve, Track};
 use crate::figure::parts::caption;
 use crate::figure::parts::table::{self, number};
+use crate::figure::print::Print;
 
 /// Height of a panel among others, and of one by itself, in pixels.
 const AMONG: f64 = 92.0;

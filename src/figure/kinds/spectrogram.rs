@@ -13,11 +13,11 @@ use crate::figure::canvas::legend::{self, Legend, Sample};
 use crate::figure::canvas::look::{DECADES, Look};
 use crate::figure::canvas::page::{Heading, Page, Rectangle, Shape};
 use crate::figure::canvas::style::{MARGIN, PNG_SCALE};
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::along::parameter_range;
 use crate::figure::parts::bifurcations::Labels;
 use crate::figure::parts::view::middles;
 use crate::figure::parts::{caption, names, table};
+use crate::figure::print::{Figure, Print};
 
 /// Size of the map on a page of its own width, in pixels, and that width.
 const MAP: (f64, f64) = (380.0, 250.0);

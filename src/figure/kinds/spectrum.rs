@@ -7,9 +7,9 @@ use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::legend::{Legend, Sample};
 use crate::figure::canvas::page::{Heading, Page, Rectangle};
 use crate::figure::canvas::style::{MARGIN, Stroke};
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::along::{Curve, Track, draw_track};
 use crate::figure::parts::{caption, names, table};
+use crate::figure::print::{Figure, Print};
 use crate::system::{Family, SpectrumQuestion};
 
 /// Size of the panel on a page of its own width, in pixels, and that width.

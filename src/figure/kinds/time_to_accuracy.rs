@@ -11,10 +11,10 @@ use crate::figure::canvas::legend::{self, Legend, Sample};
 use crate::figure::canvas::page::{Heading, Page, Rectangle, Shape};
 use crate::figure::canvas::style::{ERROR_LINE, INK, MARGIN, Stroke};
 use crate::figure::canvas::symbols;
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::caption;
 use crate::figure::parts::names;
 use crate::figure::parts::table::{self, number as number_of};
+use crate::figure::print::{Figure, Print};
 
 /// Size of the panel, in pixels.
 const PANEL: (f64, f64) = (390.0, 270.0);

@@ -15,7 +15,7 @@ use crate::figure::canvas::legend::{self, Legend, Sample};
 use crate::figure::canvas::letters;
 use crate::figure::canvas::page::{Heading, Lettering, Page, Panel, Rectangle, Shape, lettering};
 use crate::figure::canvas::style::{GREY, MARGIN, Stroke, TEXT};
-use crate::figure::figures::{Figure, Print};
+use crate::figure::print::{Figure, Print};
 
 /// Width of the panels on a page of its own width, in pixels, and that width.
 const WIDTH: f64 = 400.0;

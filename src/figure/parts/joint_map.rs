@@ -16,7 +16,7 @@ use crate::figure::canvas::legend::{self, Legend, Sample};
 use crate::figure::canvas::look::{Look, on_heat};
 use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
 use crate::figure::canvas::style::{MARGIN, Stroke, TEXT};
-use crate::figure::figures::Print;
+use crate::figure::print::Print;
 use crate::topology::{Feature, FeatureKind, Verdict};
 
 /// Contours are drawn at these shares of the largest density, and at those where colours are logarithmic.
