@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::grid::{Grid, ending};
-use super::model::{Basis, Eigen, Model, Products};
+use super::model::{Basis, Eigen, Products, ReducedModel};
 use super::{SpectrumError, Steady};
 use crate::cancellation::Cancellation;
 use crate::space::CellSpace;
@@ -161,7 +161,7 @@ struct Standing {
 
 impl Standing {
     fn new(products: &Products, size: usize, wanted: usize, shift: f64) -> Self {
-        let of = |size: usize| products.model(size).as_ref().map(Model::eigenvalues);
+        let of = |size: usize| products.model(size).as_ref().map(ReducedModel::eigenvalues);
         let (Some(all), Some(fewer)) = (of(size), of(size - GROWTH / 2)) else {
             let modes = Vec::new();
             return Self {

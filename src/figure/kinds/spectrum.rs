@@ -4,7 +4,7 @@
 use super::{Drawn, Kind, Sketch, Sweep};
 use crate::continuation::{Fluctuations, Point, SweepResult};
 use crate::figure::canvas::frame::{self, Scale};
-use crate::figure::canvas::legend::{Legend, Sample};
+use crate::figure::canvas::legend::{Legend, Swatch};
 use crate::figure::canvas::page::{Heading, Page, Rectangle};
 use crate::figure::canvas::style::{MARGIN, Stroke};
 use crate::figure::parts::along::{Curve, Track, draw_track};
@@ -265,7 +265,7 @@ impl Chart {
         let entries = track
             .curves
             .iter()
-            .map(|curve| (Sample::Curve(curve.stroke), curve.name.clone()));
+            .map(|curve| (Swatch::Curve(curve.stroke), curve.name.clone()));
         let legend = Legend::new(look, entries.collect(), width - 2.0 * MARGIN);
         let rect = Rectangle::new((left, heading.height()), (wide, high));
         let below = rect.bottom() + Scale::below();
