@@ -83,7 +83,7 @@ impl Job for MapJob<'_> {
 }
 
 /// A shard of a map.
-pub struct MapShardJob<'a> {
+pub(crate) struct MapShardJob<'a> {
     sweep: &'a Sweep,
     shard: Shard,
 }
@@ -93,7 +93,7 @@ impl<'a> MapShardJob<'a> {
     ///
     /// # Errors
     /// A report where there are more shards than steps between values of the second parameter.
-    pub fn new(sweep: &'a Sweep, shard: Shard) -> Result<Self, Report> {
+    pub(crate) fn new(sweep: &'a Sweep, shard: Shard) -> Result<Self, Report> {
         let along = ": a map is cut along its second parameter";
         check_shard(shard, rows(sweep), ("map.points", along))?;
         Ok(Self { sweep, shard })

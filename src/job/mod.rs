@@ -53,7 +53,8 @@ pub use compare::CompareJob;
 pub use curve::CurveJob;
 pub(crate) use curve::check_curves;
 pub use curve::curve_rows;
-pub use map::{MapJob, MapShardJob};
+pub use map::MapJob;
+pub(crate) use map::MapShardJob;
 pub use sweep::SweepJob;
 pub(crate) use sweep::{QUICK_POINTS, draw_sweep, sweep_outcome};
 
@@ -83,9 +84,10 @@ pub trait Job {
         if layout.has_part(home) {
             return Ok(Start::GoOn);
         }
-        Ok(match layout.is_complete(home, &of)? {
-            true => Start::Complete,
-            false => Start::Anew,
+        Ok(if layout.is_complete(home, &of)? {
+            Start::Complete
+        } else {
+            Start::Anew
         })
     }
 
@@ -321,9 +323,10 @@ pub fn carry_out<J: Job>(
     let has_time = job.has_time(&found);
     if has_time {
         let formats = &job.sweep().settings.figures.formats;
-        let figures = match formats.is_empty() {
-            true => Vec::new(),
-            false => job.figures(&found, &context),
+        let figures = if formats.is_empty() {
+            Vec::new()
+        } else {
+            job.figures(&found, &context)
         };
         folder.check()?;
         write_figures(&figures, formats, &folder.figures()?)?;
@@ -331,9 +334,10 @@ pub fn carry_out<J: Job>(
     seconds.figures = clock.elapsed().as_secs_f64();
     job.seal(&found, seconds)?;
     let outcome = job.outcome(&found);
-    let files = match has_time {
-        true => folder.close(outcome.ending())?,
-        false => Vec::new(),
+    let files = if has_time {
+        folder.close(outcome.ending())?
+    } else {
+        Vec::new()
     };
     Ok(Some(Done {
         found,

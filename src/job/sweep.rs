@@ -63,7 +63,7 @@ impl<'a> SweepJob<'a> {
     }
 
     /// The same without solving, as an unfinished sweep.
-    pub fn gathered(sweep: &'a Sweep, shards: usize, gathered: Gathered) -> Self {
+    pub(crate) fn gathered(sweep: &'a Sweep, shards: usize, gathered: Gathered) -> Self {
         Self::of(sweep, Part::Gathered(shards, gathered))
     }
 

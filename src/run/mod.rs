@@ -145,5 +145,6 @@ pub(crate) use shards::shard_folder;
 pub use shards::{Gathered, Shards};
 pub(crate) use staged::StagedRun;
 pub use stored_run::StoredRun;
-pub use summary::{FoundRow, RunSummary, find_runs};
+pub(crate) use summary::find_runs;
+pub use summary::{FoundRow, RunSummary};
 pub(crate) use warnings::{warnings_of_comparison, warnings_of_points};

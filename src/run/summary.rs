@@ -127,7 +127,7 @@ fn rows(path: &Path) -> Option<Vec<FoundRow>> {
 
 /// All runs in a folder and below: the folder itself, those beside each other in it, earlier versions, and shards. In
 /// the order of their names, with numbers by their size.
-pub fn find_runs(folder: &Path) -> Vec<PathBuf> {
+pub(crate) fn find_runs(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     look(folder, 0, &mut found);
     found

@@ -256,9 +256,10 @@ impl Motion {
         let end = |axis: usize, end: usize| {
             let is_wall = steady.closed.get(axis).is_none_or(|closed| closed[end]);
             let at = [axes[axis].from(), axes[axis].to()][end];
-            match is_wall || axes[axis].is_modes() {
-                true => 0.0,
-                false => variance(axis) / (at - means[axis]).powi(2),
+            if is_wall || axes[axis].is_modes() {
+                0.0
+            } else {
+                variance(axis) / (at - means[axis]).powi(2)
             }
         };
         let ends = (0..axes.len()).map(|axis| [0, 1].map(|one| end(axis, one)));

@@ -130,7 +130,7 @@ const ROUGH_CELLS: f64 = 32.0;
 ///
 /// # Errors
 /// [`SpectrumError`].
-pub fn rate_of_change(
+pub(crate) fn rate_of_change(
     system: &Arc<dyn System>,
     space: &CellSpace,
     settings: (&GeneratorOptions, &RateOptions),

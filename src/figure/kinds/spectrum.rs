@@ -59,9 +59,10 @@ pub(super) fn asked(family: &Family) -> Vec<Asked> {
     let of_pair = |&(one, other): &(usize, usize)| {
         let of = question.name((one, other));
         let symbol = |number: usize| names::fluctuating(family, &question.observables[number]);
-        let title = match one == other {
-            true => symbol(one),
-            false => format!("{}, {}", symbol(one), symbol(other)),
+        let title = if one == other {
+            symbol(one)
+        } else {
+            format!("{}, {}", symbol(one), symbol(other))
         };
         Asked {
             file: of.replace(", ", "_"),

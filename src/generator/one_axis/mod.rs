@@ -14,7 +14,8 @@ mod profile;
 mod rule;
 mod series;
 
-pub use end::{End, exponent_at};
+pub use end::End;
+pub(crate) use end::exponent_at;
 pub use profile::profile;
 
 use crate::space::Axis;
