@@ -16,7 +16,7 @@ mod overlap;
 mod solve;
 
 pub use accuracy::{Accuracy, AccuracyPoint, Reference};
-pub use agreement::{Agreement, agreement};
+pub use agreement::Agreement;
 pub use distance::{Distance, Distances, distances};
 pub(crate) use exact::exact_density;
 pub use exact::exact_masses;

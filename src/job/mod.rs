@@ -67,7 +67,7 @@ pub trait Job {
     fn sweep(&self) -> &Sweep;
 
     /// What stands in its folder.
-    fn layout(&self) -> Layout;
+    const LAYOUT: Layout;
 
     /// What it is made of beside the program, as TOML: work on something else is not gone on with.
     fn made_of(&self) -> String {
@@ -80,7 +80,7 @@ pub trait Job {
     /// [`RunError::OtherSweep`], with every difference, where something else stands there; [`RunError`] where that
     /// cannot be read.
     fn start(&self, home: &Path) -> Result<Start, RunError> {
-        let (layout, of) = (self.layout(), self.made_of());
+        let (layout, of) = (Self::LAYOUT, self.made_of());
         if layout.has_part(home) {
             return Ok(Start::GoOn);
         }
@@ -114,7 +114,9 @@ pub trait Job {
     ) -> Result<Option<Self::Found>, JobError>;
 
     /// How many solves are kept in the folder of a job that did not come to its end.
-    fn kept(&self) -> usize;
+    fn kept(&self) -> usize {
+        0
+    }
 
     /// How a job ended that has found this.
     fn outcome(&self, found: &Self::Found) -> Outcome;
@@ -298,7 +300,7 @@ pub fn carry_out<J: Job>(
         return Ok(None);
     }
     let goes_on = start == Start::GoOn;
-    let folder = JobFolder::open(home, job.layout(), goes_on)?;
+    let folder = JobFolder::open(home, J::LAYOUT, goes_on)?;
     if let Some(kept) = folder.kept() {
         context.say(&format!("the earlier run is kept in {}", kept.display()));
     }

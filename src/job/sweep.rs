@@ -111,13 +111,10 @@ impl<'a> SweepJob<'a> {
 
 impl Job for SweepJob<'_> {
     type Found = SweepResult;
+    const LAYOUT: Layout = Layout::SWEEP;
 
     fn sweep(&self) -> &Sweep {
         self.sweep
-    }
-
-    fn layout(&self) -> Layout {
-        Layout::SWEEP
     }
 
     fn start(&self, home: &Path) -> Result<Start, RunError> {

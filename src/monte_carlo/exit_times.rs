@@ -87,7 +87,7 @@ impl ExitTimes {
     }
 
     /// Time at which paths were given up.
-    pub fn longest(&self) -> f64 {
+    pub(crate) fn longest(&self) -> f64 {
         self.longest
     }
 

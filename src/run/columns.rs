@@ -32,14 +32,14 @@ pub(super) struct Column<'a, T> {
 }
 
 /// A column of words.
-pub(super) fn word<'a, T>(
+pub(super) fn word<'a, T, W: Into<String>>(
     name: impl Into<String>,
-    of: impl Fn(&T) -> String + 'a,
+    of: impl Fn(&T) -> W + 'a,
 ) -> Column<'a, T> {
     Column {
         name: name.into(),
         kind: Kind::Word,
-        write: Box::new(of),
+        write: Box::new(move |record| of(record).into()),
         fill: None,
         newer: false,
     }

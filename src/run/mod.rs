@@ -111,7 +111,7 @@ pub(crate) use bifurcations::{
 };
 pub(crate) use checksums::Checked;
 pub(crate) use clean::{Removable, Stays, removable_runs, remove_run};
-pub use codimension::curve_files;
+pub(crate) use codimension::curve_files;
 pub use compare::ComparedRun;
 pub(crate) use compare::{compare_files, compare_tables};
 pub use curve::FOLDER as CURVES;
@@ -129,7 +129,7 @@ pub use journal::{Journal, JournalledSource};
 pub use layout::Layout;
 pub(crate) use manifest::Manifest;
 pub use manifest::{Ending, PhaseSeconds};
-pub use map::map_files;
+pub(crate) use map::map_files;
 pub(crate) use map_shards::{MapShards, map_shard_file};
 pub use names::check_names;
 pub(crate) use number::{format_number, format_with_error};

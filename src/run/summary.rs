@@ -90,7 +90,7 @@ impl RunSummary {
     }
 
     /// How far it is, in words.
-    pub fn state(&self) -> String {
+    pub(crate) fn state(&self) -> String {
         let points = self.run.points_done();
         let points = points.map_or(String::new(), |points| format!(", {points} points"));
         match (self.run.ending(), &self.holder) {
