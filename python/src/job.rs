@@ -35,13 +35,10 @@ struct Brief<J> {
 
 impl<J: Job> Job for Brief<J> {
     type Found = J::Found;
+    const LAYOUT: Layout = J::LAYOUT;
 
     fn sweep(&self) -> &Sweep {
         self.job.sweep()
-    }
-
-    fn layout(&self) -> Layout {
-        self.job.layout()
     }
 
     fn made_of(&self) -> String {

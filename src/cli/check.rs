@@ -42,9 +42,12 @@ pub(super) fn text(file: &Path, spec: &Sweep) -> io::Result<String> {
 fn costs(spec: &Sweep) -> Vec<String> {
     let axes = spec.problem.space().axes().iter();
     let shape: Vec<String> = axes
-        .map(|axis| match axis.is_modes() {
-            true => format!("{} modes", axis.count()),
-            false => axis.count().to_string(),
+        .map(|axis| {
+            if axis.is_modes() {
+                format!("{} modes", axis.count())
+            } else {
+                axis.count().to_string()
+            }
         })
         .collect();
     let cells = spec.problem.space().n_cells();

@@ -50,9 +50,10 @@ pub(super) fn run(arguments: &CleanArguments) -> Result<Outcome, CommandError> {
     }
     let is_done = |(_, why): &(PathBuf, Stays)| !matches!(why, Stays::Refused(_));
     print(&format!("{} removed\n{}", count(going.len()), kept(&stays)))?;
-    Ok(match stays.iter().all(is_done) {
-        true => Outcome::Complete,
-        false => Outcome::Partial,
+    Ok(if stays.iter().all(is_done) {
+        Outcome::Complete
+    } else {
+        Outcome::Partial
     })
 }
 

@@ -69,7 +69,7 @@ pub(super) fn carry_out<J: Printed>(
 ) -> Result<Outcome, CommandError> {
     let output = OutputFolder::prepare(home)?;
     let home = output.path();
-    fault::at_work(home, job.layout());
+    fault::at_work(home, J::LAYOUT);
     if start == Start::Complete {
         clear_after_kill(home);
         let (text, outcome) = job.complete(home)?;

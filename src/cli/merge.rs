@@ -79,7 +79,7 @@ fn of_map(arguments: &MergeArguments) -> Result<Outcome, CommandError> {
     let path = arguments.out.as_deref().unwrap_or(&arguments.run);
     let job = MapJob::merged(&spec, &shards.shards);
     // A map that is there is made again.
-    let resume = job.layout().has_part(path);
+    let resume = MapJob::LAYOUT.has_part(path);
     jobs::run(job, path, resume, &arguments.work)
 }
 

@@ -324,9 +324,10 @@ fn print(text: &str) -> Result<Outcome, CommandError> {
 
 /// Prints a text word for word, as another file; on a terminal as any other.
 fn print_file(text: &str) -> Result<Outcome, CommandError> {
-    match io::stdout().is_terminal() {
-        true => print(text),
-        false => print_exact(text),
+    if io::stdout().is_terminal() {
+        print(text)
+    } else {
+        print_exact(text)
     }
 }
 

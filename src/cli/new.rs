@@ -126,9 +126,12 @@ fn as_typed(name: &str) -> String {
 
 /// The text with the file's own name in its comments.
 fn text(file: &StartingFile, name: &str) -> String {
-    let lines = file.text.lines().map(|line| match line.starts_with('#') {
-        true => line.replace(STAND_IN, &as_typed(&on_one_line(name))),
-        false => line.to_owned(),
+    let lines = file.text.lines().map(|line| {
+        if line.starts_with('#') {
+            line.replace(STAND_IN, &as_typed(&on_one_line(name)))
+        } else {
+            line.to_owned()
+        }
     });
     let mut text = lines.collect::<Vec<_>>().join("\n");
     text.push('\n');

@@ -64,9 +64,10 @@ impl OutputFolder {
                 return Err(OutputError::NotAFolder {
                     path: path.to_owned(),
                     file: ancestor.to_owned(),
-                    what: match ancestor.exists() {
-                        true => "a file",
-                        false => "a link that leads nowhere",
+                    what: if ancestor.exists() {
+                        "a file"
+                    } else {
+                        "a link that leads nowhere"
                     },
                 });
             }

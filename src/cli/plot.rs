@@ -65,9 +65,10 @@ fn nothing_drawn(stored: &Stored) -> &'static str {
         return "`figures.formats` is an empty list: nothing to draw\n";
     }
     let has_density = |point: &Point| !point.densities.is_empty();
-    match stored.result.points.iter().any(has_density) {
-        true => "the run has no figures of these names: nothing to draw\n",
-        false => super::sweep::summary::nothing_to_draw(&stored.result),
+    if stored.result.points.iter().any(has_density) {
+        "the run has no figures of these names: nothing to draw\n"
+    } else {
+        super::sweep::summary::nothing_to_draw(&stored.result)
     }
 }
 

@@ -113,9 +113,10 @@ fn parameters(summary: &RunSummary) -> String {
     let words: Vec<String> = each
         .map(|(name, value)| format!("{name} = {value}"))
         .collect();
-    match words.is_empty() {
-        true => "none held".to_owned(),
-        false => words.join(", "),
+    if words.is_empty() {
+        "none held".to_owned()
+    } else {
+        words.join(", ")
     }
 }
 

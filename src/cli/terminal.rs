@@ -7,10 +7,7 @@ pub(super) fn harmless(text: &str, styled: bool) -> String {
     let mut shown = String::with_capacity(text.len());
     let mut rest = text;
     while let Some(character) = rest.chars().next() {
-        let length = match styled {
-            true => colour(rest),
-            false => 0,
-        };
+        let length = if styled { colour(rest) } else { 0 };
         let length = if rest.starts_with("\r\n") { 2 } else { length };
         if length > 0 {
             shown += &rest[..length];

@@ -86,9 +86,10 @@ fn recomputed(
             Err(_) if cancellation.is_cancelled() => return Ok((text, Outcome::Interrupted)),
             found => found?,
         };
-        let word = match found.agrees() {
-            true => "the same density",
-            false => "ANOTHER density",
+        let word = if found.agrees() {
+            "the same density"
+        } else {
+            "ANOTHER density"
         };
         good += usize::from(found.agrees());
         text += &format!(
@@ -100,9 +101,10 @@ fn recomputed(
     }
     let all = points.len();
     text += &format!("{good} of {all} points that were solved again have the stored densities\n");
-    let outcome = match good == all {
-        true => Outcome::Complete,
-        false => Outcome::Partial,
+    let outcome = if good == all {
+        Outcome::Complete
+    } else {
+        Outcome::Partial
     };
     Ok((text, outcome))
 }

@@ -37,7 +37,7 @@ impl Agreement {
 }
 
 /// Compares a density with a grid error (`computed`) to one with a sampling error (`sampled`), on the same cells.
-pub fn agreement(computed: &EstimatedDensity, sampled: &EstimatedDensity) -> Agreement {
+pub(crate) fn agreement(computed: &EstimatedDensity, sampled: &EstimatedDensity) -> Agreement {
     let mut found = Agreement {
         observable: computed.observable,
         bins: 0,

@@ -16,7 +16,7 @@ pub struct MeasurePair {
 
 impl MeasurePair {
     /// The difference in units of both errors.
-    pub fn apart(&self) -> f64 {
+    pub(crate) fn apart(&self) -> f64 {
         let difference = self.monte_carlo.0 - self.generator.0;
         difference / self.monte_carlo.1.hypot(self.generator.1)
     }
@@ -24,7 +24,7 @@ impl MeasurePair {
 
 impl ComparedValue {
     /// The numbers that both the generator and Monte Carlo give with an error.
-    pub fn measures(&self) -> Vec<MeasurePair> {
+    pub(crate) fn measures(&self) -> Vec<MeasurePair> {
         let of = |method| {
             let mut all = self.solved.iter();
             let solved = all.find(|solved| solved.method == method);

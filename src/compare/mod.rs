@@ -16,7 +16,7 @@ mod overlap;
 mod solve;
 
 pub use accuracy::{Accuracy, AccuracyPoint, Reference};
-pub use agreement::{Agreement, agreement};
+pub use agreement::Agreement;
 pub use distance::{Distance, Distances, distances};
 pub(crate) use exact::exact_density;
 pub use exact::exact_masses;
@@ -101,7 +101,7 @@ impl ComparedValue {
     /// Marginals on which generator and Monte Carlo disagree beyond their stated uncertainties: in more than 1 % of the
     /// bins (two are let pass), and as a whole by total variation. Bins err together, so that one fluctuation may put
     /// many of them outside; the replicates of the distance know that.
-    pub fn disagreements(&self) -> Vec<Observable> {
+    pub(crate) fn disagreements(&self) -> Vec<Observable> {
         let disagrees = |one: &&Agreement| {
             let both = (Method::Generator, Some(Method::MonteCarlo));
             let whole = self.pair(both.0, both.1, one.observable);
@@ -147,7 +147,7 @@ pub struct Comparison {
 
 impl Comparison {
     /// Whether every method gave a density at every value that may be relied on.
-    pub fn is_complete(&self) -> bool {
+    pub(crate) fn is_complete(&self) -> bool {
         let mut all = self.values.iter().flat_map(|value| &value.solved);
         all.all(|solved| solved.status.is_resolved())
     }

@@ -3,6 +3,8 @@
 //! A finding is made by a method, stored in `points.csv` as a code with numbers, and put into a sentence where people
 //! read it. Its code and its axis are its kind: findings of one kind at several points are told once.
 
+mod parts;
+
 /// Something that a user must know of a point. Shares are of the whole mass or of the whole time.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -245,30 +247,6 @@ pub enum PassageFault {
     RunsAway,
 }
 
-impl PassageFault {
-    /// All of them, with their codes.
-    const CODES: [(Self, &'static str); 8] = [
-        (Self::Nowhere, "passage-nowhere"),
-        (Self::Everywhere, "passage-everywhere"),
-        (Self::Start, "passage-start"),
-        (Self::NoDensity, "passage-no-density"),
-        (Self::Never, "passage-never"),
-        (Self::Unsolved, "passage-unsolved"),
-        (Self::Rare, "passage-rare"),
-        (Self::RunsAway, "passage-runs-away"),
-    ];
-
-    fn code(self) -> &'static str {
-        let known = Self::CODES.into_iter().find(|(fault, _)| *fault == self);
-        known.map_or("", |(_, code)| code)
-    }
-
-    fn of_code(code: &str) -> Option<Self> {
-        let known = Self::CODES.into_iter().find(|(_, known)| *known == code);
-        known.map(|(fault, _)| fault)
-    }
-}
-
 /// A class of cells with a steady state of its own, beside others.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -294,207 +272,11 @@ pub enum ShiftedQuantity {
 }
 
 impl Finding {
-    /// What is stored of a finding: its code, the axis it speaks of, and its numbers, the one that matters most first.
-    pub(crate) fn parts(&self) -> (&'static str, Option<usize>, Vec<f64>) {
-        let plain = |code, numbers: &[f64]| (code, None, numbers.to_vec());
-        let along = |code, axis, numbers: &[f64]| (code, Some(axis), numbers.to_vec());
-        match *self {
-            Self::Escaping { share, rate } => plain("escaping", &[share, rate]),
-            Self::NoSteadyState {
-                rate,
-                relaxation_time,
-                limit,
-            } => plain("no-steady-state", &[rate, relaxation_time, limit]),
-            Self::Absorbed { axis, at, exponent } => along("absorbed", axis, &[at, exponent]),
-            Self::LeavesAtOnce { rate } => plain("leaves-at-once", &[rate]),
-            Self::NothingStays {
-                runaways,
-                outside,
-                limit,
-            } => plain("nothing-stays", &[runaways, outside, limit]),
-            Self::Outside { share } => plain("outside", &[share]),
-            Self::SeveralClasses { ref classes } => plain("several-classes", &flat(classes)),
-            Self::NotConverged { error } => plain("not-converged", &[error]),
-            Self::EdgeMass { axis, mass, range } => {
-                along("edge-mass", axis, &[mass, range[0], range[1]])
-            }
-            Self::NegativeDensity { mass } => plain("negative-density", &[mass]),
-            Self::NegativeCells { mass, watched } => plain("negative-cells", &[mass, watched]),
-            Self::WideCells { axis, peclet } => along("wide-cells", axis, &[peclet]),
-            Self::BalanceBroken {
-                axis,
-                relative,
-                error,
-            } => along("balance-broken", axis, &[relative, error]),
-            Self::FewModes { change } => plain("few-modes", &[change]),
-            Self::UnresolvedSeries { axis, change } => along("unresolved-series", axis, &[change]),
-            Self::SmearedKink { axis, widths } => along("smeared-kink", axis, &[widths]),
-            Self::SurfaceOffFaces { axis, at } => along("surface-off-faces", axis, &[at]),
-            Self::JumpInsideCells { axis, at } => along("jump-inside-cells", axis, &[at]),
-            Self::NumericalDiffusion { share } => plain("numerical-diffusion", &[share]),
-            Self::StepBias {
-                quantity,
-                relative,
-                standard_error,
-                time_step,
-            } => {
-                let (code, axis) = quantity.code();
-                (code, axis, vec![relative, standard_error, time_step])
-            }
-            Self::UnresolvedRelaxation { time } => plain("unresolved-relaxation", &[time]),
-            Self::ShortBurnIn { burn_in, time } => plain("short-burn-in", &[burn_in, time]),
-            Self::NoReplicates => plain("no-replicates", &[]),
-            Self::FewReplicates { usable, wanted } => {
-                plain("few-replicates", &[usable as f64, wanted as f64])
-            }
-            Self::FewSlowModes { known, wanted } => {
-                plain("few-slow-modes", &[known as f64, wanted as f64])
-            }
-            Self::NoPassage { passage, fault } => plain(fault.code(), &[passage as f64]),
-            Self::PassageCut {
-                passage,
-                share,
-                longest,
-            } => plain("passage-cut", &[passage as f64, share, longest]),
-            Self::PointMass { exponent, error } => plain("point-mass", &[exponent, error]),
-            Self::NoFixedPoint { axis, drift, noise } => {
-                along("no-fixed-point", axis, &[drift, noise])
-            }
-            Self::NoExponent => plain("no-exponent", &[]),
-            Self::NoSpectrum => plain("no-spectrum", &[]),
-            Self::SpectrumCut { frequency } => plain("spectrum-cut", &[frequency]),
-            Self::Told(_) => plain("told", &[]),
-        }
-    }
-
-    /// The finding of these [`Finding::parts`]; `None` where there is no such finding. Sentences have no parts that
-    /// would bring them back.
-    pub(crate) fn from_parts(code: &str, axis: Option<usize>, numbers: &[f64]) -> Option<Self> {
-        Some(match (code, axis, numbers) {
-            ("escaping", None, &[share, rate]) => Self::Escaping { share, rate },
-            ("no-steady-state", None, &[rate, relaxation_time, limit]) => Self::NoSteadyState {
-                rate,
-                relaxation_time,
-                limit,
-            },
-            ("absorbed", Some(axis), &[at, exponent]) => Self::Absorbed { axis, at, exponent },
-            ("leaves-at-once", None, &[rate]) => Self::LeavesAtOnce { rate },
-            ("nothing-stays", None, &[runaways, outside, limit]) => Self::NothingStays {
-                runaways,
-                outside,
-                limit,
-            },
-            ("outside", None, &[share]) => Self::Outside { share },
-            ("several-classes", None, numbers) => Self::SeveralClasses {
-                classes: unflat(numbers)?,
-            },
-            ("not-converged", None, &[error]) => Self::NotConverged { error },
-            ("edge-mass", Some(axis), &[mass, from, to]) => Self::EdgeMass {
-                axis,
-                mass,
-                range: [from, to],
-            },
-            ("negative-density", None, &[mass]) => Self::NegativeDensity { mass },
-            ("negative-cells", None, &[mass, watched]) => Self::NegativeCells { mass, watched },
-            ("wide-cells", Some(axis), &[peclet]) => Self::WideCells { axis, peclet },
-            ("balance-broken", Some(axis), &[relative, error]) => Self::BalanceBroken {
-                axis,
-                relative,
-                error,
-            },
-            ("few-modes", None, &[change]) => Self::FewModes { change },
-            ("unresolved-series", Some(axis), &[change]) => Self::UnresolvedSeries { axis, change },
-            ("smeared-kink", Some(axis), &[widths]) => Self::SmearedKink { axis, widths },
-            ("surface-off-faces", Some(axis), &[at]) => Self::SurfaceOffFaces { axis, at },
-            ("jump-inside-cells", Some(axis), &[at]) => Self::JumpInsideCells { axis, at },
-            ("numerical-diffusion", None, &[share]) => Self::NumericalDiffusion { share },
-            ("unresolved-relaxation", None, &[time]) => Self::UnresolvedRelaxation { time },
-            ("short-burn-in", None, &[burn_in, time]) => Self::ShortBurnIn { burn_in, time },
-            ("no-replicates", None, &[]) => Self::NoReplicates,
-            ("few-replicates", None, &[usable, wanted]) => Self::FewReplicates {
-                usable: usable as usize,
-                wanted: wanted as usize,
-            },
-            ("few-slow-modes", None, &[known, wanted]) => Self::FewSlowModes {
-                known: known as usize,
-                wanted: wanted as usize,
-            },
-            ("passage-cut", None, &[passage, share, longest]) => Self::PassageCut {
-                passage: passage as usize,
-                share,
-                longest,
-            },
-            ("point-mass", None, &[exponent, error]) => Self::PointMass { exponent, error },
-            ("no-fixed-point", Some(axis), &[drift, noise]) => {
-                Self::NoFixedPoint { axis, drift, noise }
-            }
-            ("no-exponent", None, &[]) => Self::NoExponent,
-            ("no-spectrum", None, &[]) => Self::NoSpectrum,
-            ("spectrum-cut", None, &[frequency]) => Self::SpectrumCut { frequency },
-            (code, None, &[passage]) => Self::NoPassage {
-                passage: passage as usize,
-                fault: PassageFault::of_code(code)?,
-            },
-            (code, axis, &[relative, standard_error, time_step]) => Self::StepBias {
-                quantity: ShiftedQuantity::of_code(code, axis)?,
-                relative,
-                standard_error,
-                time_step,
-            },
-            _ => return None,
-        })
-    }
-
     /// Code and axis. Findings that share them say the same thing with other numbers, and are told once.
     pub fn kind(&self) -> (&'static str, Option<usize>) {
         let (code, axis, _) = self.parts();
         (code, axis)
     }
-}
-
-impl ShiftedQuantity {
-    fn code(self) -> (&'static str, Option<usize>) {
-        match self {
-            Self::Variance(axis) => ("step-bias-variance", Some(axis)),
-            Self::Energy => ("step-bias-energy", None),
-            Self::SurfaceMass(axis) => ("step-bias-surface", Some(axis)),
-        }
-    }
-
-    fn of_code(code: &str, axis: Option<usize>) -> Option<Self> {
-        let known = [Self::Energy].into_iter().chain(
-            axis.into_iter()
-                .flat_map(|axis| [Self::Variance(axis), Self::SurfaceMass(axis)]),
-        );
-        known
-            .into_iter()
-            .find(|quantity| quantity.code() == (code, axis))
-    }
-}
-
-/// Classes as numbers: how many there are, then cells, share and centre of each.
-fn flat(classes: &[SteadyClass]) -> Vec<f64> {
-    let mut numbers = vec![classes.len() as f64];
-    for class in classes {
-        numbers.extend([class.cells as f64, class.share]);
-        numbers.extend(&class.centre);
-    }
-    numbers
-}
-
-fn unflat(numbers: &[f64]) -> Option<Vec<SteadyClass>> {
-    let (&count, rest) = numbers.split_first()?;
-    let count = count as usize;
-    let each = rest.len().checked_div(count)?;
-    if each < 2 || each * count != rest.len() {
-        return None;
-    }
-    let classes = rest.chunks_exact(each).map(|class| SteadyClass {
-        cells: class[0] as usize,
-        share: class[1],
-        centre: class[2..].to_vec(),
-    });
-    Some(classes.collect())
 }
 
 #[cfg(test)]

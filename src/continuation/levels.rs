@@ -105,7 +105,7 @@ impl SpectralChange {
 
 /// A measure less its level at one value of the parameter, with its error.
 #[derive(Clone, Copy)]
-struct Sample {
+struct Excess {
     at: f64,
     over: f64,
     error: f64,
@@ -115,7 +115,7 @@ struct Sample {
 /// The root of a polynomial through samples.
 struct Root {
     /// The samples beside it.
-    ends: [Sample; 2],
+    ends: [Excess; 2],
     value: f64,
     /// What one sample less changes.
     interpolation: f64,
@@ -185,7 +185,7 @@ pub(super) fn next_value(points: &[Point], asked: &[MeasureLevel], tolerance: f6
 }
 
 /// The measure at all points that have it.
-fn samples(points: &[Point], asked: &MeasureLevel) -> Vec<Sample> {
+fn samples(points: &[Point], asked: &MeasureLevel) -> Vec<Excess> {
     let known = points.iter().filter_map(|point| {
         let mut measures = point.report.measures.iter();
         let one = measures.find(|one| one.name == asked.measure)?;
@@ -196,7 +196,7 @@ fn samples(points: &[Point], asked: &MeasureLevel) -> Vec<Sample> {
     let is_positive = asked.level > 0.0 && known.iter().all(|(_, value, _)| *value > 0.0);
     let sample = |(at, value, error): (f64, f64, Option<f64>)| {
         let size = if is_positive { value } else { 1.0 };
-        Sample {
+        Excess {
             at,
             over: match is_positive {
                 true => (value / asked.level).ln(),
@@ -210,11 +210,11 @@ fn samples(points: &[Point], asked: &MeasureLevel) -> Vec<Sample> {
 }
 
 /// All roots between neighbouring samples, ascending.
-fn roots(samples: &[Sample]) -> Vec<Root> {
-    let crosses = |pair: &[Sample]| (pair[0].over < 0.0) != (pair[1].over < 0.0);
+fn roots(samples: &[Excess]) -> Vec<Root> {
+    let crosses = |pair: &[Excess]| (pair[0].over < 0.0) != (pair[1].over < 0.0);
     let pairs = samples.windows(2).enumerate();
     let found = pairs.filter(|(_, pair)| crosses(pair)).map(|(left, pair)| {
-        let nodes = |count: usize| -> &[Sample] {
+        let nodes = |count: usize| -> &[Excess] {
             let used = count.min(samples.len());
             let first = (left + 1)
                 .saturating_sub(used / 2)
@@ -241,7 +241,7 @@ fn roots(samples: &[Sample]) -> Vec<Root> {
 }
 
 /// The root between two samples of the polynomial through some.
-fn root(nodes: &[Sample], ends: [Sample; 2]) -> f64 {
+fn root(nodes: &[Excess], ends: [Excess; 2]) -> f64 {
     let [mut a, mut b] = ends.map(|end| end.at);
     let is_below = ends[0].over < 0.0;
     for _ in 0..HALVINGS {
@@ -255,13 +255,13 @@ fn root(nodes: &[Sample], ends: [Sample; 2]) -> f64 {
 }
 
 /// The polynomial through some samples, at a value.
-fn through(nodes: &[Sample], at: f64) -> f64 {
-    let term = |(number, node): (usize, &Sample)| {
+fn through(nodes: &[Excess], at: f64) -> f64 {
+    let term = |(number, node): (usize, &Excess)| {
         let others = nodes
             .iter()
             .enumerate()
             .filter(|(other, _)| *other != number);
-        let weight = |product: f64, (_, other): (usize, &Sample)| {
+        let weight = |product: f64, (_, other): (usize, &Excess)| {
             product * (at - other.at) / (node.at - other.at)
         };
         node.over * others.fold(1.0, weight)

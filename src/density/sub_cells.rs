@@ -99,9 +99,12 @@ impl Lines {
             let cells = cells_around(cell, window, axis.count(), faces);
             let nodes = &axis.edges()[cells.start..=cells.end];
             let (from, width) = (axis.edges()[cell], axis.width(cell));
-            let edge = |part: usize| match part == parts {
-                true => axis.edges()[cell + 1],
-                false => from + width * part as f64 / parts as f64,
+            let edge = |part: usize| {
+                if part == parts {
+                    axis.edges()[cell + 1]
+                } else {
+                    from + width * part as f64 / parts as f64
+                }
             };
             for part in 0..parts {
                 let (low, high) = (edge(part), edge(part + 1));

@@ -13,7 +13,7 @@ use crate::system::{Family, ParameterRange};
 pub(super) struct Scene {
     pub(super) program: String,
     title: String,
-    model: Model,
+    model: ShownModel,
     swept: Swept,
     parameters: Vec<Parameter>,
     axes: Vec<Axis>,
@@ -26,7 +26,7 @@ pub(super) struct Scene {
 }
 
 #[derive(Debug, Serialize)]
-struct Model {
+struct ShownModel {
     name: String,
     title: String,
     equations: Vec<Equation>,
@@ -123,14 +123,14 @@ impl Scene {
     }
 }
 
-fn model(family: &Family) -> Model {
+fn model(family: &Family) -> ShownModel {
     let model = family.model();
     let equations = model.equations.iter().zip(model.typeset());
     let equations = equations.map(|(text, element)| Equation {
         text: text.clone(),
         layout: layout(element),
     });
-    Model {
+    ShownModel {
         name: model.name.clone(),
         title: model.title.clone(),
         equations: equations.collect(),

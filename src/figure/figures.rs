@@ -4,103 +4,15 @@
 use rayon::prelude::*;
 
 use super::FigureError;
-use super::canvas::drawing::Drawing;
-use super::canvas::{pdf, raster, svg};
 use super::kinds::{self, Sketch, Sweep};
 use super::parts::names;
+use super::print::{Figure, Print};
 use super::style::FigureStyle;
 use crate::compare::Comparison;
 use crate::continuation::SweepResult;
 use crate::continuation::curve::{Curve, CurveOrigin, SweepInPlane};
 use crate::continuation::map::RegimeMap;
-use crate::figure::canvas::look::Look;
-use crate::figure::canvas::page::Page;
 use crate::system::{Family, Model, ParameterValues};
-
-/// A figure: a drawing with a name.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Figure {
-    /// Name of its file without the extension, such as `diagram_x`.
-    pub name: String,
-    /// What is to be printed below it: what is seen, of which system, by which method, what is marked.
-    pub caption: String,
-    /// The numbers it was drawn from, as CSV with a header.
-    pub data: String,
-    /// Panels that may stand on further pages where one has no room for all.
-    panels: usize,
-    drawing: Drawing,
-}
-
-impl Figure {
-    /// A page with its caption and its numbers; the sketch gives it its name.
-    pub(super) fn new(page: &Page, caption: String, data: String) -> Self {
-        Self {
-            name: String::new(),
-            caption,
-            data,
-            panels: 1,
-            drawing: page.drawing(),
-        }
-    }
-
-    /// The same, of so many panels in all, of which [`Print::share`] says those that stand on one page.
-    pub(super) fn of_panels(self, panels: usize) -> Self {
-        Self { panels, ..self }
-    }
-
-    /// Panels that may stand on further pages.
-    pub(super) fn panels(&self) -> usize {
-        self.panels
-    }
-
-    /// Its height, in figure pixels.
-    pub(super) fn height(&self) -> f64 {
-        self.drawing.height()
-    }
-
-    /// The same in the middle of a page of that height, where it is lower.
-    pub(super) fn on_page(mut self, height: f64) -> Self {
-        self.drawing.centre(height);
-        self
-    }
-
-    /// The figure as an SVG document. Heat maps are embedded pictures; equal results give equal bytes.
-    pub fn svg(&self) -> String {
-        svg::svg(&self.drawing)
-    }
-
-    /// The figure as a PNG: 8-bit RGB, with as many pixels to the inch as its style says, which is written into it.
-    ///
-    /// # Errors
-    /// [`FigureError::Raster`] where that are more than memory holds.
-    pub fn png(&self) -> Result<Vec<u8>, FigureError> {
-        raster::png(&self.drawing)
-    }
-
-    /// The figure as a PDF of one page, in its size, with its fonts embedded and its text as text; its name is the
-    /// title, its caption the subject and what stands for the figure where a program reads it aloud. Equal figures give
-    /// equal bytes.
-    pub fn pdf(&self) -> Vec<u8> {
-        pdf::pdf(&self.drawing, &self.name, &self.caption)
-    }
-}
-
-/// How figures are printed: what stands above each, and how they look.
-pub(super) struct Print<'a> {
-    /// Plain text, may be empty.
-    pub(super) title: &'a str,
-    pub(super) look: Look,
-    /// Which of how many pages, counted from zero.
-    pub(super) part: (usize, usize),
-}
-
-impl Print<'_> {
-    /// Those of so many panels that stand on this page: about as many as on the others, in their order.
-    pub(super) fn share(&self, panels: usize) -> std::ops::Range<usize> {
-        let (number, pages) = self.part;
-        number * panels / pages..(number + 1) * panels / pages
-    }
-}
 
 /// The figures that can be drawn of a sweep, a comparison, a map, curves or a friction law. Nothing is drawn before it
 /// is asked for, and no file is written: see [`write_figures`](super::write_figures). A title (plain text, may be

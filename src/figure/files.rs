@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 
 use super::error::FigureError;
-use super::figures::Figure;
+use super::print::Figure;
 use super::settings::Format;
 use crate::UNFINISHED;
 use crate::formula::latex;

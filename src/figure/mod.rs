@@ -51,12 +51,16 @@ mod files;
 mod kinds;
 #[cfg(feature = "figures")]
 mod parts;
+#[cfg(feature = "figures")]
+mod print;
 
 #[cfg(feature = "figures")]
 pub use error::FigureError;
 #[cfg(feature = "figures")]
-pub use figures::{Figure, Figures};
+pub use figures::Figures;
 #[cfg(feature = "figures")]
 pub use files::write_figures;
+#[cfg(feature = "figures")]
+pub use print::Figure;
 pub use settings::{FigureSettings, Format};
 pub use style::{ColourMap, ColourScale, FigureStyle, FigureWidth, Ground, Typeface};

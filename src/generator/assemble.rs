@@ -40,7 +40,7 @@ pub fn assemble(
 ///
 /// # Errors
 /// As [`assemble`].
-pub fn assemble_damped(
+pub(crate) fn assemble_damped(
     system: &dyn System,
     space: &CellSpace,
     options: &GeneratorOptions,

@@ -42,11 +42,13 @@ mod smooth;
 
 pub(crate) use absorbing::levels;
 pub use absorbing::{AbsorbingGenerator, Closure, assemble_absorbing};
-pub use assemble::{assemble, assemble_damped};
+pub use assemble::assemble;
+pub(crate) use assemble::assemble_damped;
 pub use derivative::assemble_derivative;
 pub use grading::automatic_grading;
 pub use masses::{cell_masses, unknown_moments};
-pub use one_axis::{End, OneAxis, exponent_at, one_axis, profile};
+pub(crate) use one_axis::exponent_at;
+pub use one_axis::{End, OneAxis, one_axis, profile};
 pub(crate) use resolution::{Resolution, resolution};
 pub use scheme::{AdvectiveScheme, Dissipation};
 

@@ -80,13 +80,10 @@ fn described(sweep: &Sweep) -> String {
 
 impl Job for CompareJob<'_> {
     type Found = Comparison;
+    const LAYOUT: Layout = Layout::COMPARISON;
 
     fn sweep(&self) -> &Sweep {
         self.sweep
-    }
-
-    fn layout(&self) -> Layout {
-        Layout::COMPARISON
     }
 
     fn made_of(&self) -> String {

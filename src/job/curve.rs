@@ -67,7 +67,7 @@ impl<'a> CurveJob<'a> {
     }
 
     /// How curves are followed.
-    pub fn options(&self) -> CurveOptions {
+    pub(crate) fn options(&self) -> CurveOptions {
         CurveOptions {
             largest_step: self.curve.step,
             branches: self.curve.branches,
@@ -94,13 +94,10 @@ impl<'a> CurveJob<'a> {
 
 impl Job for CurveJob<'_> {
     type Found = CurveTree;
+    const LAYOUT: Layout = Layout::CURVES;
 
     fn sweep(&self) -> &Sweep {
         self.sweep
-    }
-
-    fn layout(&self) -> Layout {
-        Layout::CURVES
     }
 
     fn made_of(&self) -> String {

@@ -31,13 +31,10 @@ impl<'a> MapJob<'a> {
 
 impl Job for MapJob<'_> {
     type Found = RegimeMap;
+    const LAYOUT: Layout = Layout::MAP;
 
     fn sweep(&self) -> &Sweep {
         self.sweep
-    }
-
-    fn layout(&self) -> Layout {
-        Layout::MAP
     }
 
     fn solve(
@@ -52,10 +49,6 @@ impl Job for MapJob<'_> {
         };
         let map = make(self, (folder, goes_on), context, &wanted)?;
         Ok(map.filter(|map| !map.nodes.is_empty()))
-    }
-
-    fn kept(&self) -> usize {
-        0
     }
 
     fn outcome(&self, found: &RegimeMap) -> Outcome {
@@ -83,7 +76,7 @@ impl Job for MapJob<'_> {
 }
 
 /// A shard of a map.
-pub struct MapShardJob<'a> {
+pub(crate) struct MapShardJob<'a> {
     sweep: &'a Sweep,
     shard: Shard,
 }
@@ -93,7 +86,7 @@ impl<'a> MapShardJob<'a> {
     ///
     /// # Errors
     /// A report where there are more shards than steps between values of the second parameter.
-    pub fn new(sweep: &'a Sweep, shard: Shard) -> Result<Self, Report> {
+    pub(crate) fn new(sweep: &'a Sweep, shard: Shard) -> Result<Self, Report> {
         let along = ": a map is cut along its second parameter";
         check_shard(shard, rows(sweep), ("map.points", along))?;
         Ok(Self { sweep, shard })
@@ -102,13 +95,10 @@ impl<'a> MapShardJob<'a> {
 
 impl Job for MapShardJob<'_> {
     type Found = MapShard;
+    const LAYOUT: Layout = Layout::MAP_SHARD;
 
     fn sweep(&self) -> &Sweep {
         self.sweep
-    }
-
-    fn layout(&self) -> Layout {
-        Layout::MAP_SHARD
     }
 
     fn solve(
@@ -120,10 +110,6 @@ impl Job for MapShardJob<'_> {
         make(self, (folder, goes_on), context, &|maker| {
             maker.shard(self.shard)
         })
-    }
-
-    fn kept(&self) -> usize {
-        0
     }
 
     fn outcome(&self, found: &MapShard) -> Outcome {

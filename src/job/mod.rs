@@ -53,7 +53,8 @@ pub use compare::CompareJob;
 pub use curve::CurveJob;
 pub(crate) use curve::check_curves;
 pub use curve::curve_rows;
-pub use map::{MapJob, MapShardJob};
+pub use map::MapJob;
+pub(crate) use map::MapShardJob;
 pub use sweep::SweepJob;
 pub(crate) use sweep::{QUICK_POINTS, draw_sweep, sweep_outcome};
 
@@ -66,7 +67,7 @@ pub trait Job {
     fn sweep(&self) -> &Sweep;
 
     /// What stands in its folder.
-    fn layout(&self) -> Layout;
+    const LAYOUT: Layout;
 
     /// What it is made of beside the program, as TOML: work on something else is not gone on with.
     fn made_of(&self) -> String {
@@ -79,13 +80,14 @@ pub trait Job {
     /// [`RunError::OtherSweep`], with every difference, where something else stands there; [`RunError`] where that
     /// cannot be read.
     fn start(&self, home: &Path) -> Result<Start, RunError> {
-        let (layout, of) = (self.layout(), self.made_of());
+        let (layout, of) = (Self::LAYOUT, self.made_of());
         if layout.has_part(home) {
             return Ok(Start::GoOn);
         }
-        Ok(match layout.is_complete(home, &of)? {
-            true => Start::Complete,
-            false => Start::Anew,
+        Ok(if layout.is_complete(home, &of)? {
+            Start::Complete
+        } else {
+            Start::Anew
         })
     }
 
@@ -112,7 +114,9 @@ pub trait Job {
     ) -> Result<Option<Self::Found>, JobError>;
 
     /// How many solves are kept in the folder of a job that did not come to its end.
-    fn kept(&self) -> usize;
+    fn kept(&self) -> usize {
+        0
+    }
 
     /// How a job ended that has found this.
     fn outcome(&self, found: &Self::Found) -> Outcome;
@@ -296,7 +300,7 @@ pub fn carry_out<J: Job>(
         return Ok(None);
     }
     let goes_on = start == Start::GoOn;
-    let folder = JobFolder::open(home, job.layout(), goes_on)?;
+    let folder = JobFolder::open(home, J::LAYOUT, goes_on)?;
     if let Some(kept) = folder.kept() {
         context.say(&format!("the earlier run is kept in {}", kept.display()));
     }
@@ -321,9 +325,10 @@ pub fn carry_out<J: Job>(
     let has_time = job.has_time(&found);
     if has_time {
         let formats = &job.sweep().settings.figures.formats;
-        let figures = match formats.is_empty() {
-            true => Vec::new(),
-            false => job.figures(&found, &context),
+        let figures = if formats.is_empty() {
+            Vec::new()
+        } else {
+            job.figures(&found, &context)
         };
         folder.check()?;
         write_figures(&figures, formats, &folder.figures()?)?;
@@ -331,9 +336,10 @@ pub fn carry_out<J: Job>(
     seconds.figures = clock.elapsed().as_secs_f64();
     job.seal(&found, seconds)?;
     let outcome = job.outcome(&found);
-    let files = match has_time {
-        true => folder.close(outcome.ending())?,
-        false => Vec::new(),
+    let files = if has_time {
+        folder.close(outcome.ending())?
+    } else {
+        Vec::new()
     };
     Ok(Some(Done {
         found,

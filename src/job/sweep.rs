@@ -63,7 +63,7 @@ impl<'a> SweepJob<'a> {
     }
 
     /// The same without solving, as an unfinished sweep.
-    pub fn gathered(sweep: &'a Sweep, shards: usize, gathered: Gathered) -> Self {
+    pub(crate) fn gathered(sweep: &'a Sweep, shards: usize, gathered: Gathered) -> Self {
         Self::of(sweep, Part::Gathered(shards, gathered))
     }
 
@@ -111,13 +111,10 @@ impl<'a> SweepJob<'a> {
 
 impl Job for SweepJob<'_> {
     type Found = SweepResult;
+    const LAYOUT: Layout = Layout::SWEEP;
 
     fn sweep(&self) -> &Sweep {
         self.sweep
-    }
-
-    fn layout(&self) -> Layout {
-        Layout::SWEEP
     }
 
     fn start(&self, home: &Path) -> Result<Start, RunError> {

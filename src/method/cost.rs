@@ -7,7 +7,7 @@ use crate::stationary::generator::RateError;
 
 /// What a point costs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Cost {
+pub(crate) enum Cost {
     /// By the generator.
     Generator(GeneratorCost),
     /// By SGCM.
@@ -18,7 +18,7 @@ pub enum Cost {
 
 impl Cost {
     /// Bytes at work, where it is uncertain the upper bound.
-    pub fn most_bytes(&self) -> f64 {
+    pub(crate) fn most_bytes(&self) -> f64 {
         match self {
             Self::Generator(cost) => cost.bytes,
             Self::Sgcm(cost) => cost.most_bytes,

@@ -44,20 +44,23 @@ mod watched;
 pub use any::MethodSource;
 pub use bins::BinsError;
 pub(crate) use bins::{QuantityRange, automatic_bins, check_averaged};
-pub use cost::Cost;
-pub use generator::{GeneratorCost, GeneratorMethodOptions, GeneratorSource};
+pub(crate) use cost::Cost;
+pub(crate) use generator::GeneratorCost;
+pub use generator::{GeneratorMethodOptions, GeneratorSource};
 pub(crate) use generator::{
     OneAxisFamily, automatic_modes, change_by_more_modes, highest_frequency,
 };
 pub use measures::DerivedMeasure;
 #[cfg(feature = "store")]
 pub(crate) use measures::{columns_of_family, passage_columns};
-pub use monte_carlo::{Estimator, MonteCarloCost, MonteCarloOptions, MonteCarloSource};
+pub(crate) use monte_carlo::MonteCarloCost;
+pub use monte_carlo::{Estimator, MonteCarloOptions, MonteCarloSource};
 pub use options::MethodOptions;
 pub use problem::Problem;
 pub use range::RangeError;
 pub(crate) use range::{PILOT_BOX, automatic_ranges};
-pub use sgcm::{Corrected, Correction, SgcmCost, SgcmOptions, SgcmSource, solve_corrected};
+pub(crate) use sgcm::SgcmCost;
+pub use sgcm::{Corrected, Correction, SgcmOptions, SgcmSource, solve_corrected};
 pub(crate) use sticking::check_sticking;
 pub use time_step::StepChoice;
 

@@ -27,7 +27,7 @@ impl MethodOptions {
     pub(crate) const KINDS: [&'static str; 3] = ["generator", "sgcm", "monte-carlo"];
 
     /// Whether what the cells of this space do to the densities can be checked.
-    pub fn cell_check(&self, space: &CellSpace) -> CellCheck {
+    pub(crate) fn cell_check(&self, space: &CellSpace) -> CellCheck {
         match self {
             Self::Generator(_) => GeneratorMethodOptions::cell_check(space),
             Self::Sgcm(_) => SgcmOptions::CELL_CHECK,

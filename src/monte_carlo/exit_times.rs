@@ -87,7 +87,7 @@ impl ExitTimes {
     }
 
     /// Time at which paths were given up.
-    pub fn longest(&self) -> f64 {
+    pub(crate) fn longest(&self) -> f64 {
         self.longest
     }
 
@@ -202,13 +202,19 @@ impl Sample {
             mean += left * (longest + 1.0 / rate);
             square += left * ((longest + 1.0 / rate).powi(2) + 1.0 / (rate * rate));
         }
-        let survival = times.iter().map(|&time| match time <= longest {
-            true => 1.0 - self.times.partition_point(|&end| end <= time) as f64 / count,
-            false => left * (-rate * (time - longest)).exp(),
+        let survival = times.iter().map(|&time| {
+            if time <= longest {
+                1.0 - self.times.partition_point(|&end| end <= time) as f64 / count
+            } else {
+                left * (-rate * (time - longest)).exp()
+            }
         });
-        let quantile = |&share: &f64| match share * count + 0.5 <= exits as f64 {
-            true => self.ranked(share * count),
-            false => longest + (left / (1.0 - share)).ln() / rate,
+        let quantile = |&share: &f64| {
+            if share * count + 0.5 <= exits as f64 {
+                self.ranked(share * count)
+            } else {
+                longest + (left / (1.0 - share)).ln() / rate
+            }
         };
         let moments = [mean, (square - mean * mean).max(0.0).sqrt(), rate];
         let numbers = moments.into_iter().chain(survival);

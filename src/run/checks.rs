@@ -38,14 +38,11 @@ pub(super) fn columns<'a>(
             move |cell| Ok(numbered(cell.text)),
             |one, number| one.observable = number,
         ),
-        word("by", |one: &CheckedIndicator| one.by.name().to_owned()).read(
+        word("by", |one: &CheckedIndicator| one.by.name()).read(
             |cell| cell.choice(&CheckedBy::ALL, CheckedBy::name),
             |one, by| one.by = by,
         ),
-        word("indicator", |one: &CheckedIndicator| {
-            one.kind.code().to_owned()
-        })
-        .read(
+        word("indicator", |one: &CheckedIndicator| one.kind.code()).read(
             |cell| cell.choice(&IndicatorKind::ALL, |kind| kind.code()),
             |one, kind| one.kind = kind,
         ),

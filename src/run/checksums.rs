@@ -159,9 +159,10 @@ fn list(run: &Path, name: &str, names: &mut Vec<String>) -> Result<(), RunError>
             let entry = entry.map_err(unreadable)?;
             let name = format!("{name}/{}", entry.file_name().to_string_lossy());
             // What a folder says of its entries spares thousands of questions.
-            match entry.file_type().map_err(unreadable)?.is_file() {
-                true => names.push(name),
-                false => list(run, &name, names)?,
+            if entry.file_type().map_err(unreadable)?.is_file() {
+                names.push(name)
+            } else {
+                list(run, &name, names)?
             }
         }
     } else if found.is_file() {

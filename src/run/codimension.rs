@@ -60,7 +60,7 @@ pub(super) fn several_columns<'a>(
 ///
 /// # Errors
 /// [`RunError`] when a file cannot be composed.
-pub fn curve_files(
+pub(crate) fn curve_files(
     family: &Family,
     plane: &Plane,
     tree: &CurveTree,
@@ -96,13 +96,11 @@ pub(super) fn columns<'a>(family: &'a Family, plane: &Plane) -> Columns<'a, Codi
     let [first, second] = parameters(plane);
     Columns(vec![
         word("label", |one: &CodimensionTwo| one.label.clone()),
-        word("kind", |one: &CodimensionTwo| one.kind.name().to_owned()),
+        word("kind", |one: &CodimensionTwo| one.kind.name()),
         number(first, |one: &CodimensionTwo| one.values[0]),
         number(second, |one: &CodimensionTwo| one.values[1]),
         number("error", |one: &CodimensionTwo| one.error),
-        word("status", |one: &CodimensionTwo| {
-            one.status().word().to_owned()
-        }),
+        word("status", |one: &CodimensionTwo| one.status().word()),
         word("observable", move |one: &CodimensionTwo| {
             observables(family, one)
         }),

@@ -32,14 +32,14 @@ pub(super) struct Column<'a, T> {
 }
 
 /// A column of words.
-pub(super) fn word<'a, T>(
+pub(super) fn word<'a, T, W: Into<String>>(
     name: impl Into<String>,
-    of: impl Fn(&T) -> String + 'a,
+    of: impl Fn(&T) -> W + 'a,
 ) -> Column<'a, T> {
     Column {
         name: name.into(),
         kind: Kind::Word,
-        write: Box::new(of),
+        write: Box::new(move |record| of(record).into()),
         fill: None,
         newer: false,
     }
@@ -202,9 +202,10 @@ impl<T> Columns<'_, T> {
         let broken = |error: csv::Error| unreadable(std::io::Error::other(error.to_string()));
         let bytes = super::place::read(path).map_err(unreadable)?;
         let end = bytes.iter().rposition(|&byte| byte == b'\n');
-        let whole = match complete {
-            true => &bytes[..],
-            false => &bytes[..end.map_or(0, |end| end + 1)],
+        let whole = if complete {
+            &bytes[..]
+        } else {
+            &bytes[..end.map_or(0, |end| end + 1)]
         };
         // Rows that are too short are then told by the column they lack.
         let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(whole);

@@ -68,7 +68,7 @@ pub(super) fn columns<'a>(family: &'a Family, plane: &Plane) -> Vec<Column<'a, C
         word("observable", |row: &Row<'_>| {
             row.curve.observable.name(family)
         }),
-        word("method", |row: &Row<'_>| row.curve.kind.name().to_owned()),
+        word("method", |row: &Row<'_>| row.curve.kind.name()),
         number("indicator", |row: &Row<'_>| row.point.indicator),
         number(format!("indicator_by_{first}"), |row: &Row<'_>| {
             row.point.gradient[0]
@@ -81,9 +81,7 @@ pub(super) fn columns<'a>(family: &'a Family, plane: &Plane) -> Vec<Column<'a, C
             row.point.tangent[1] / row.point.tangent[0]
         }),
         flag("checked", |row: &Row<'_>| row.point.checked),
-        word("status", |row: &Row<'_>| {
-            row.point.status().word().to_owned()
-        }),
+        word("status", |row: &Row<'_>| row.point.status().word()),
         number("error_solver", |row: &Row<'_>| row.point.parts.solver),
         number("error_grid", |row: &Row<'_>| row.point.parts.grid),
         number("error_sampling", |row: &Row<'_>| row.point.parts.sampling),

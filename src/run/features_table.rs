@@ -26,9 +26,7 @@ pub(super) fn columns<'a>(family: &'a Family) -> Columns<'a, FeatureRow<'a>> {
         word("observable", move |row: &FeatureRow<'_>| {
             row.observable.name(family)
         }),
-        word("kind", |row: &FeatureRow<'_>| {
-            kind_word(row.feature.kind).to_owned()
-        }),
+        word("kind", |row: &FeatureRow<'_>| kind_word(row.feature.kind)),
         optional("position", coordinate(0)),
         number("density", |row: &FeatureRow<'_>| row.feature.density),
         number("persistence", |row: &FeatureRow<'_>| {
@@ -42,7 +40,7 @@ pub(super) fn columns<'a>(family: &'a Family) -> Columns<'a, FeatureRow<'a>> {
             row.feature.standard_error
         }),
         word("verdict", |row: &FeatureRow<'_>| {
-            verdict_word(row.feature.verdict).to_owned()
+            verdict_word(row.feature.verdict)
         }),
         optional("position_error", error_along(0)),
         optional("density_error", |row: &FeatureRow<'_>| {

@@ -48,9 +48,7 @@ pub(super) fn columns<'a>(
             signature.map_or_else(String::new, ToString::to_string)
         }));
     }
-    columns.push(word("status", |node: &MapNode| {
-        node.status.word().to_owned()
-    }));
+    columns.push(word("status", |node: &MapNode| node.status.word()));
     columns.push(count("level", |node: &MapNode| node.level));
     columns.push(word("reason", |node: &MapNode| {
         node.reason.clone().unwrap_or_default()
@@ -161,7 +159,7 @@ fn regions_json(map: &RegimeMap, observable: usize) -> Vec<Value> {
 ///
 /// # Errors
 /// [`RunError`] when a file cannot be composed.
-pub fn map_files(
+pub(crate) fn map_files(
     map: &RegimeMap,
     sweep: &str,
     seconds: f64,

@@ -104,23 +104,33 @@ fn point_json(point: &CurvePoint) -> Value {
     })
 }
 
+/// The words for why a curve ends, where there is nothing else to know of it.
+static REASONS: [(EndReason, &str); 12] = [
+    (EndReason::Closed, "closed"),
+    (EndReason::Cusp, "cusp"),
+    (EndReason::DegenerateSplit, "degenerate split"),
+    (EndReason::DegenerateKink, "degenerate kink"),
+    (EndReason::KinkCorner, "corner at a kink"),
+    (EndReason::FeatureLost, "feature lost"),
+    (EndReason::SymmetryLost, "symmetry lost"),
+    (EndReason::Singular, "singular"),
+    (EndReason::NotConverged, "not converged"),
+    (EndReason::Sampling, "sampling"),
+    (EndReason::TooManyPoints, "too many points"),
+    (EndReason::Interrupted, "interrupted"),
+];
+const BORDER: &str = "border";
+const NO_DENSITY: &str = "no density";
+
 /// A word for why a curve ends, and what else there is to know of it.
 fn reason_words(reason: &EndReason) -> (&'static str, Value) {
     match reason {
-        EndReason::Border(side) => ("border", json!(side)),
-        EndReason::NoDensity(why) => ("no density", json!(why)),
-        EndReason::Closed => ("closed", Value::Null),
-        EndReason::Cusp => ("cusp", Value::Null),
-        EndReason::DegenerateSplit => ("degenerate split", Value::Null),
-        EndReason::DegenerateKink => ("degenerate kink", Value::Null),
-        EndReason::KinkCorner => ("corner at a kink", Value::Null),
-        EndReason::FeatureLost => ("feature lost", Value::Null),
-        EndReason::SymmetryLost => ("symmetry lost", Value::Null),
-        EndReason::Singular => ("singular", Value::Null),
-        EndReason::NotConverged => ("not converged", Value::Null),
-        EndReason::Sampling => ("sampling", Value::Null),
-        EndReason::TooManyPoints => ("too many points", Value::Null),
-        EndReason::Interrupted => ("interrupted", Value::Null),
+        EndReason::Border(side) => (BORDER, json!(side)),
+        EndReason::NoDensity(why) => (NO_DENSITY, json!(why)),
+        reason => {
+            let known = REASONS.iter().find(|(known, _)| known == reason);
+            (known.map_or("", |(_, word)| word), Value::Null)
+        }
     }
 }
 

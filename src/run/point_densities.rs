@@ -32,14 +32,16 @@ impl<'a> PointDensities<'a> {
         cells: (&'a CellSpace, &'a [Axis]),
     ) -> Result<Self, RunError> {
         let path = run.join("densities.zarr");
-        let journal = match is_complete {
-            true => None,
-            false => Journal::look(run)?,
+        let journal = if is_complete {
+            None
+        } else {
+            Journal::look(run)?
         };
         // Unfinished runs of early versions have a store that grew.
-        let store = match journal.is_none() || path.join("zarr.json").is_file() {
-            true => Some(StoredDensities::open(&path, subject, cells)?),
-            false => None,
+        let store = if journal.is_none() || path.join("zarr.json").is_file() {
+            Some(StoredDensities::open(&path, subject, cells)?)
+        } else {
+            None
         };
         let path = match &journal {
             Some(journal) => journal.path(),

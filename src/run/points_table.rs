@@ -58,14 +58,11 @@ fn of_solve<'a>(family: &'a Family, methods: &'a [&'static str]) -> [Column<'a, 
     [
         number(family.parameter(), |point: &Point| point.value)
             .read(|cell| cell.number(), |point, value| point.value = value),
-        word("status", |point: &Point| {
-            point.report.status.word().to_owned()
-        })
-        .read(
+        word("status", |point: &Point| point.report.status.word()).read(
             |cell| cell.choice(&PointStatus::ALL, PointStatus::word),
             |point, status| point.report.status = status,
         ),
-        word("method", |point: &Point| point.report.method.to_owned()).read(
+        word("method", |point: &Point| point.report.method).read(
             |cell| cell.choice(methods, |name| name),
             |point, method| point.report.method = method,
         ),

@@ -22,7 +22,7 @@ pub struct Recomputed {
 
 impl Recomputed {
     /// Whether the stored densities are those of the equations, by this program.
-    pub fn agrees(&self) -> bool {
+    pub(crate) fn agrees(&self) -> bool {
         self.apart <= self.allowed
     }
 }
@@ -45,7 +45,7 @@ impl StoredRun {
     ///
     /// # Errors
     /// [`RunError::Recompute`] when it cannot be solved, or is solved on other cells.
-    pub fn recompute(
+    pub(crate) fn recompute(
         &self,
         sweep: &Sweep,
         stored: &Point,

@@ -73,9 +73,10 @@ fn cells_in_words(family: &Family, finding: &Finding) -> Option<String> {
     Some(match *finding {
         Finding::Absorbed { axis, at, exponent } => {
             let name = family.axis(axis);
-            let power = match exponent.is_finite() {
-                true => format!("like the power {exponent:.3} of the distance"),
-                false => "faster than any power of the distance".to_owned(),
+            let power = if exponent.is_finite() {
+                format!("like the power {exponent:.3} of the distance")
+            } else {
+                "faster than any power of the distance".to_owned()
             };
             format!(
                 "no stationary density: the noise dies at {name} = {at}, where the density would grow {power}; all that \

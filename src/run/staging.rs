@@ -122,9 +122,10 @@ impl Staging {
         }
         // A file is replaced in one step; folders, and what is not there any more, make room first.
         let leaving = all.into_iter().filter(|entry| {
-            let stays = match is_new(entry) {
-                true => !self.home.join(entry).is_dir(),
-                false => staying.contains(entry),
+            let stays = if is_new(entry) {
+                !self.home.join(entry).is_dir()
+            } else {
+                staying.contains(entry)
             };
             is_there(entry) && !stays
         });

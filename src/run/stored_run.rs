@@ -116,7 +116,7 @@ impl StoredRun {
     }
 
     /// Version of the program that made it.
-    pub fn version(&self) -> &str {
+    pub(crate) fn version(&self) -> &str {
         &self.manifest.version
     }
 
@@ -143,7 +143,7 @@ impl StoredRun {
     }
 
     /// How the run ended.
-    pub fn ending(&self) -> Ending {
+    pub(crate) fn ending(&self) -> Ending {
         self.manifest.ending
     }
 
@@ -184,7 +184,7 @@ impl StoredRun {
     }
 
     /// Seed of the random streams.
-    pub fn seed(&self) -> u64 {
+    pub(crate) fn seed(&self) -> u64 {
         self.manifest.seed
     }
 

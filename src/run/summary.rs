@@ -90,7 +90,7 @@ impl RunSummary {
     }
 
     /// How far it is, in words.
-    pub fn state(&self) -> String {
+    pub(crate) fn state(&self) -> String {
         let points = self.run.points_done();
         let points = points.map_or(String::new(), |points| format!(", {points} points"));
         match (self.run.ending(), &self.holder) {
@@ -127,7 +127,7 @@ fn rows(path: &Path) -> Option<Vec<FoundRow>> {
 
 /// All runs in a folder and below: the folder itself, those beside each other in it, earlier versions, and shards. In
 /// the order of their names, with numbers by their size.
-pub fn find_runs(folder: &Path) -> Vec<PathBuf> {
+pub(crate) fn find_runs(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     look(folder, 0, &mut found);
     found

@@ -1,6 +1,16 @@
 //! Errors of numbers that were worked out with all and with half of the dissipation, on the cells of a sweep and on
 //! fewer.
 
+use std::sync::Arc;
+
+use super::grid::Grid;
+use super::modes::Motion;
+use super::{SpectrumError, Steady};
+use crate::generator::GeneratorOptions;
+use crate::space::CellSpace;
+use crate::stationary::generator::AbsorbingWork;
+use crate::system::System;
+
 /// Grids by which errors are made: cells an axis over those of the sweep, and how often what they differ by is taken,
 /// as for first passages.
 pub(super) const FEWER: [(f64, f64); 2] = [(0.75, 1.4), (0.6, 0.6)];
@@ -14,6 +24,33 @@ const MARGIN: f64 = 1.5;
 /// Neighbours on either side whose errors an error along a curve is no smaller than, relative to the values: where a
 /// difference changes its sign it says nothing.
 const BESIDE: usize = 4;
+
+/// What a grid gives, and what it took.
+pub(super) type Worked<T> = Result<(T, AbsorbingWork), SpectrumError>;
+
+/// Solves on the cells of a sweep and on each of the [`FEWER`], side by side; what all of them took.
+pub(super) fn on_grids<T: Send>(
+    system: &Arc<dyn System>,
+    space: &CellSpace,
+    steady: Steady<'_>,
+    options: &GeneratorOptions,
+    solve: impl Fn(&Grid, &Motion) -> Worked<T> + Sync,
+) -> Worked<(T, Vec<T>)> {
+    let grid = |factor| Grid::new(system, space, factor, options);
+    let finest = grid(1.0)?;
+    let motion = Motion::new(&finest, system.as_ref(), steady).ok_or(SpectrumError::Still)?;
+    let coarse = || FEWER.map(|(factor, _)| solve(&grid(factor)?, &motion));
+    let (on_finest, on_fewer) = rayon::join(|| solve(&finest, &motion), coarse);
+    let (found, mut work) = on_finest?;
+    let mut others = Vec::new();
+    for solved in on_fewer {
+        let (other, more) = solved?;
+        work.factorisations += more.factorisations;
+        work.passes += more.passes;
+        others.push(other);
+    }
+    Ok(((found, others), work))
+}
 
 /// A number on one grid.
 #[derive(Debug, Clone, Copy)]

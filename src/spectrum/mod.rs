@@ -92,9 +92,8 @@ mod resolvent;
 mod slow;
 mod transfer;
 
-pub use power::{
-    Features, Power, PowerQuestion, Spectrum, StateFunction, power_spectra, rate_of_change,
-};
+pub(crate) use power::rate_of_change;
+pub use power::{Features, Power, PowerQuestion, Spectrum, StateFunction, power_spectra};
 pub use slow::{SlowMode, SlowModes, slow_modes};
 
 use crate::generator::GeneratorError;

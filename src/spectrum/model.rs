@@ -57,7 +57,7 @@ impl Basis {
 }
 
 /// What one generator, and another beside it, do between the first vectors of two spaces.
-pub(super) struct Model {
+pub(super) struct ReducedModel {
     /// From weights of the model to those of rows and columns.
     rows: DMatrix<f64>,
     columns: DMatrix<f64>,
@@ -99,7 +99,7 @@ impl Products {
     }
 
     /// The model of so many vectors of either space; `None` where the two have nothing in common.
-    pub(super) fn model(&self, size: usize) -> Option<Model> {
+    pub(super) fn model(&self, size: usize) -> Option<ReducedModel> {
         let size = size.min(self.overlaps.len()).min(self.images[0].len());
         let table =
             |rows: &[Vec<f64>]| DMatrix::from_fn(size, size, |row, column| rows[row][column]);
@@ -124,7 +124,7 @@ impl Products {
         let of = |rates: &[Vec<f64>]| &rows * table(rates) * &columns;
         let (first, second) = (of(&self.first), of(&self.second));
         let is_finite = first.iter().chain(&second).all(|rate| rate.is_finite());
-        (is_finite && !kept.is_empty()).then_some(Model {
+        (is_finite && !kept.is_empty()).then_some(ReducedModel {
             rows,
             columns,
             first,
@@ -154,7 +154,7 @@ pub(super) struct Eigen {
     pub(super) rows: DVector<Complex<f64>>,
 }
 
-impl Model {
+impl ReducedModel {
     /// How one of the two generators passes on what observables do: `rows` is what they give of each column, an
     /// observable a row, and `columns` what each row gives of their deviations, a deviation a column.
     pub(super) fn transfer(

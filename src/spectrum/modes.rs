@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::grid::{Grid, ending};
-use super::model::{Basis, Eigen, Model, Products};
+use super::model::{Basis, Eigen, Products, ReducedModel};
 use super::{SpectrumError, Steady};
 use crate::cancellation::Cancellation;
 use crate::space::CellSpace;
@@ -161,7 +161,7 @@ struct Standing {
 
 impl Standing {
     fn new(products: &Products, size: usize, wanted: usize, shift: f64) -> Self {
-        let of = |size: usize| products.model(size).as_ref().map(Model::eigenvalues);
+        let of = |size: usize| products.model(size).as_ref().map(ReducedModel::eigenvalues);
         let (Some(all), Some(fewer)) = (of(size), of(size - GROWTH / 2)) else {
             let modes = Vec::new();
             return Self {
@@ -256,9 +256,10 @@ impl Motion {
         let end = |axis: usize, end: usize| {
             let is_wall = steady.closed.get(axis).is_none_or(|closed| closed[end]);
             let at = [axes[axis].from(), axes[axis].to()][end];
-            match is_wall || axes[axis].is_modes() {
-                true => 0.0,
-                false => variance(axis) / (at - means[axis]).powi(2),
+            if is_wall || axes[axis].is_modes() {
+                0.0
+            } else {
+                variance(axis) / (at - means[axis]).powi(2)
             }
         };
         let ends = (0..axes.len()).map(|axis| [0, 1].map(|one| end(axis, one)));

@@ -109,9 +109,10 @@ fn maxima(derivative: &dyn Fn(f64) -> f64, places: &[f64]) -> Vec<f64> {
 fn halved(function: &dyn Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
     for _ in 0..HALVINGS {
         let middle = 0.5 * (a + b);
-        match function(middle) > 0.0 {
-            true => a = middle,
-            false => b = middle,
+        if function(middle) > 0.0 {
+            a = middle
+        } else {
+            b = middle
         }
     }
     0.5 * (a + b)

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::errors::{Estimate, FEWER, combined, smoothed};
+use super::errors::{Estimate, Worked, combined, on_grids, smoothed};
 use super::grid::Grid;
 use super::modes::Motion;
 use super::peak::{Peak, steepest_rise};
@@ -90,20 +90,9 @@ pub fn power_spectra(
     settings: (&GeneratorOptions, &RateOptions),
     cancellation: &Cancellation,
 ) -> Result<Power, SpectrumError> {
-    let finest = Grid::new(system, space, 1.0, settings.0)?;
-    let motion = Motion::new(&finest, system.as_ref(), steady).ok_or(SpectrumError::Still)?;
-    let solver = (settings.1, cancellation);
-    let of = |grid: &Grid| on_grid(grid, question, &motion, solver);
-    let coarse = || FEWER.map(|(factor, _)| of(&Grid::new(system, space, factor, settings.0)?));
-    let (on_finest, on_fewer) = rayon::join(|| of(&finest), coarse);
-    let (numbers, mut work) = on_finest?;
-    let mut others = Vec::new();
-    for found in on_fewer {
-        let (numbers, more) = found?;
-        work.factorisations += more.factorisations;
-        work.passes += more.passes;
-        others.push(numbers);
-    }
+    let solve =
+        |grid: &Grid, motion: &Motion| on_grid(grid, question, motion, (settings.1, cancellation));
+    let ((numbers, others), work) = on_grids(system, space, steady, settings.0, solve)?;
     let known = combined(&numbers, &others);
     let mut rest = known.as_slice();
     let spectra = question.pairs.iter().map(|&(one, other)| {
@@ -114,9 +103,10 @@ pub fn power_spectra(
         };
         let count = question.frequencies.len();
         let real = take(count);
-        let (imaginary, features) = match one == other {
-            true => (Vec::new(), Some(features(&take(FEATURES)))),
-            false => (take(count), None),
+        let (imaginary, features) = if one == other {
+            (Vec::new(), Some(features(&take(FEATURES))))
+        } else {
+            (take(count), None)
         };
         let correlation = take(question.lags.1);
         Spectrum {
@@ -140,18 +130,14 @@ const ROUGH_CELLS: f64 = 32.0;
 ///
 /// # Errors
 /// [`SpectrumError`].
-pub fn rate_of_change(
+pub(crate) fn rate_of_change(
     system: &Arc<dyn System>,
     space: &CellSpace,
     settings: (&GeneratorOptions, &RateOptions),
     cancellation: &Cancellation,
 ) -> Result<f64, SpectrumError> {
-    let most = space
-        .axes()
-        .iter()
-        .filter(|axis| !axis.is_modes())
-        .map(Axis::count)
-        .max();
+    let cells = space.axes().iter().filter(|axis| !axis.is_modes());
+    let most = cells.map(Axis::count).max();
     let factor = ROUGH_CELLS / most.unwrap_or(1) as f64;
     let grid = Grid::new(system, space, factor.min(1.0), settings.0)?;
     let mut solver = RateSolver::new(grid.space.clone(), *settings.1).cancelled_by(cancellation);
@@ -192,7 +178,7 @@ fn on_grid(
     question: &PowerQuestion<'_>,
     motion: &Motion,
     solver: (&RateOptions, &Cancellation),
-) -> Result<(Vec<Estimate>, AbsorbingWork), SpectrumError> {
+) -> Worked<Vec<Estimate>> {
     let cells = grid.space.n_cells();
     let values = question.observables.iter().map(|observable| {
         let at = |cell| observable(&grid.space.centre(cell));
@@ -257,17 +243,16 @@ fn of_ends(
     question: &PowerQuestion<'_>,
     numbers: &[f64],
 ) -> Vec<f64> {
-    let at = |frequency: f64| match one == other {
-        true => 2.0 * resolvent.of_ends(frequency, (one, one)),
-        false => {
-            resolvent.of_ends(frequency, (one, other)) + resolvent.of_ends(frequency, (other, one))
+    let at = |frequency: f64| {
+        let there = resolvent.of_ends(frequency, (one, other));
+        if one == other {
+            2.0 * there
+        } else {
+            there + resolvent.of_ends(frequency, (other, one))
         }
     };
-    let along: Vec<f64> = question
-        .frequencies
-        .iter()
-        .map(|&frequency| at(frequency))
-        .collect();
+    let frequencies = question.frequencies.iter();
+    let along: Vec<f64> = frequencies.map(|&frequency| at(frequency)).collect();
     let mut all = along.clone();
     if one == other {
         let [peak, width, time, curvature] = [0, 1, 2, 3].map(|place| numbers[along.len() + place]);

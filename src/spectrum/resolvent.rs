@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::grid::{Grid, ending};
-use super::model::{Basis, Model, Products};
+use super::model::{Basis, Products, ReducedModel};
 use super::modes::{Motion, balanced};
 use super::transfer::Transfer;
 use super::{SpectrumError, dot};
@@ -182,7 +182,7 @@ impl Growing<'_> {
     }
 
     /// The model with so many vectors of either side, with what passes on what observables do.
-    fn model(&self, size: usize) -> Option<(Model, [DMatrix<f64>; 3])> {
+    fn model(&self, size: usize) -> Option<(ReducedModel, [DMatrix<f64>; 3])> {
         let model = self.products.model(size)?;
         let size = size
             .min(self.columns.vectors.len())

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Complex;
 
-use super::errors::{DAMPED, FEWER};
+use super::errors::{DAMPED, FEWER, on_grids};
 use super::grid::Grid;
 use super::modes::{GridMode, Motion, in_order, modes};
 use super::{SpectrumError, Steady};
@@ -48,22 +48,15 @@ pub fn slow_modes(
     settings: (&GeneratorOptions, &RateOptions),
     cancellation: &Cancellation,
 ) -> Result<SlowModes, SpectrumError> {
-    let finest = Grid::new(system, space, 1.0, settings.0)?;
-    let motion = Motion::new(&finest, system.as_ref(), steady).ok_or(SpectrumError::Still)?;
-    let solver = (settings.1, cancellation);
-    let of = |grid: &Grid| modes(grid, wanted, &motion, solver);
-    let coarse = || FEWER.map(|(factor, _)| of(&Grid::new(system, space, factor, settings.0)?));
-    let (on_finest, on_fewer) = rayon::join(|| of(&finest), coarse);
-    let (found, mut work) = on_finest?;
+    let solve =
+        |grid: &Grid, motion: &Motion| modes(grid, wanted, motion, (settings.1, cancellation));
+    let ((found, fewer), work) = on_grids(system, space, steady, settings.0, solve)?;
     let mut errors: Vec<Complex<f64>> = found
         .iter()
         .map(|one| sizes(one.change) * DAMPED + both(one.error))
         .collect();
-    for (solved, (_, times)) in on_fewer.into_iter().zip(FEWER) {
-        let (others, more) = solved?;
-        work.factorisations += more.factorisations;
-        work.passes += more.passes;
-        for (error, other) in errors.iter_mut().zip(matched(&found, &others)) {
+    for (others, (_, times)) in fewer.iter().zip(FEWER) {
+        for (error, other) in errors.iter_mut().zip(matched(&found, others)) {
             *error = Complex::new(
                 error.re.max(times * other.re),
                 error.im.max(times * other.im),

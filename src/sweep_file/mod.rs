@@ -68,7 +68,7 @@ pub use file::SweepFile;
 pub use gallery::{StartingFile, starting_files};
 pub use keys::{Key, help, keys};
 pub(crate) use memory::{bytes_in_words, machine_memory};
-pub use names::list;
+pub(crate) use names::list;
 pub use report::Report;
 pub use settings::{
     AxisSettings, BinSettings, CurveSettings, Grade, MapSettings, Modes, ModesOf, Settings,

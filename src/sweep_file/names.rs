@@ -34,7 +34,7 @@ fn plain(name: &str) -> String {
 }
 
 /// Names in backquotes, separated by commas.
-pub fn list<S: AsRef<str>>(names: &[S]) -> String {
+pub(crate) fn list<S: AsRef<str>>(names: &[S]) -> String {
     let quoted: Vec<String> = names
         .iter()
         .map(|name| format!("`{}`", name.as_ref()))

@@ -296,7 +296,7 @@ impl Sweep {
     }
 
     /// How `[locate]` wants curves, in a box whose first side is so long.
-    pub fn curve_options(&self, first: f64) -> CurveOptions {
+    pub(crate) fn curve_options(&self, first: f64) -> CurveOptions {
         let locate = &self.settings.locate;
         let usual = CurveOptions::default();
         CurveOptions {

@@ -1,6 +1,7 @@
 //! What is said of the axes and parameters of a model: names, symbols, meaning, and the values that are allowed.
 
-use super::typed::PHASE_AXIS;
+/// Name of the axis of a forcing's phase: that of time in formulas.
+pub(crate) const PHASE_AXIS: &str = "t";
 
 /// One axis of a model's state.
 #[derive(Debug, Clone, PartialEq, Eq)]

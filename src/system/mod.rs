@@ -51,6 +51,7 @@ mod typed;
 pub use crate::formula::{LANES, Lanes};
 pub use binding::{ParameterValues, SystemError};
 pub use coloured::{ColouredNoiseError, NoiseKind};
+pub(crate) use description::PHASE_AXIS;
 pub use description::{AxisDescription, ParameterDescription, ParameterRange};
 pub(crate) use enclosed::Enclosed;
 pub use facts::{Facts, PeriodicDrift, SwitchingSurface, Symmetry};
@@ -66,11 +67,11 @@ pub use quantity::{AtPhase, BoundQuantity, Quantity, QuantityError, QuantityFaul
 pub use region::{Region, RegionError, RegionFault, regions};
 pub use spectrum::{Band, Fluctuating, Sides, SpectrumQuestion};
 pub(crate) use symmetry::{proved_symmetry, symmetry_over_a_period};
+pub(crate) use typed::FormulaHazard;
 pub use typed::{
     CompiledDrift, FormulaPlace, Interpretation, PeriodFault, TypedEquations, TypedModel,
     TypedModelError,
 };
-pub(crate) use typed::{FormulaHazard, PHASE_AXIS};
 
 /// An Itô equation dX = a(X, t) dt + Σ_k b_k(X, t) e_{axis(k)} dW_k with bound parameters.
 ///

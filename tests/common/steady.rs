@@ -1,15 +1,46 @@
 //! The steady state of a system on cells and modes, and trajectories beside it, which share only the drift with it.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use pbif::generator::{AdvectiveScheme, GeneratorOptions, assemble};
-use pbif::space::CellSpace;
+use pbif::space::{Axis, CellSpace};
 use pbif::stationary::generator::{RateOptions, RateSolver};
-use pbif::system::{LANES, Lanes, System};
+use pbif::system::{LANES, Lanes, Model, System, TypedModel};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256Plus;
 use rand_xoshiro::rand_core::SeedableRng;
 use rayon::prelude::*;
+
+/// A model by its equations and the amplitudes of its noises.
+pub(crate) fn model(equations: &[(&str, &str)], noise: &[(&str, &str)]) -> Arc<Model> {
+    let names: Vec<&str> = equations.iter().map(|(axis, _)| *axis).collect();
+    let mut model = TypedModel::new("model", "Model", names);
+    for (axis, drift) in equations {
+        model = model.with_equation(*axis, *drift);
+    }
+    for (axis, amplitude) in noise {
+        model = model.with_noise(*axis, [*amplitude]);
+    }
+    model.build().unwrap()
+}
+
+/// Even cells from, to and how many along each axis.
+pub(crate) fn even_cells(axes: &[(f64, f64, usize)]) -> CellSpace {
+    let axes = axes.iter();
+    let axes = axes.map(|&(from, to, count)| Axis::uniform(from, to, count).unwrap());
+    CellSpace::new(axes.collect()).unwrap()
+}
+
+/// Masses or unknowns of the steady state by the usual settings.
+pub(crate) fn masses(system: &dyn System, space: &CellSpace) -> Vec<f64> {
+    let generator = assemble(system, space, &GeneratorOptions::default()).unwrap();
+    let mut solver = RateSolver::new(space.clone(), RateOptions::default());
+    let steady = solver.solve(&generator.matrix, &generator.escape, None);
+    let steady = steady.unwrap();
+    assert!(steady.info.converged);
+    steady.mass
+}
 
 /// Unknowns at the nodes, Σ = 1.
 pub(crate) fn solve(system: &dyn System, space: &CellSpace, scheme: AdvectiveScheme) -> Vec<f64> {

@@ -14,8 +14,9 @@ const SWEEPS: [&str; 7] = [
     "coulomb_fc.toml cells.x.count=24 cells.y.count=24 sweep.points=25 locate.tolerance=1e-3",
     "coulomb_fc.toml cells.x={from=-3.0,to=3.0,count=24} cells.y={from=-3.0,to=3.0,count=24} sweep.points=7 \
      locate.tolerance=1e-3",
-    "coulomb_fc.toml method.kind=sgcm method.samples=160 cells.x.count=20 cells.y.count=20 sweep.points=5 \
-     locate.tolerance=5e-3",
+    // Damped well, so that trajectories forget their start soon.
+    "coulomb_fc.toml method.kind=sgcm method.samples=160 system.parameters.kappa=0.1 system.parameters.sigma2=0.1 \
+     cells.x.count=20 cells.y.count=20 sweep.points=5 locate.tolerance=5e-3",
     "bistable.toml method.kind=monte-carlo method.error=0.3 sweep.points=5 locate.tolerance=0.5",
     "bistable.toml sweep.points=9",
     "rayleigh_energy.toml cells.x.count=24 cells.y.count=24 sweep.points=7",

@@ -18,8 +18,10 @@ pub(super) const TIMES: [&str; 4] = [
     "preparation_seconds",
 ];
 
+/// Of an oscillator that is damped well, so that trajectories forget their start soon.
 pub(super) const COMPARISON: &str = "compare sweeps/coulomb_fc.toml figures.at=[0.005,-0.01] figures.formats=[\"svg\"] \
-                          method.error=0.05 method.samples=40 cells.x.count=24 cells.y.count=24";
+                          system.parameters.kappa=0.1 system.parameters.sigma2=0.1 method.error=0.05 \
+                          method.samples=40 cells.x.count=24 cells.y.count=24";
 pub(super) const MAP: &str = "sweep cusp.toml map.parameter=a map.from=0.7 map.to=1.3 map.points=5 map.depth=1 sweep.points=7";
 const CURVE: &str = "curve run --row PB1 --second a --from 0.7 --to 1.3";
 

@@ -117,7 +117,10 @@ fn dependencies() -> BTreeMap<String, BTreeMap<String, PathBuf>> {
             .as_os_str()
             .to_string_lossy()
             .into_owned();
-        let is_test = relative.file_stem().is_some_and(|stem| stem == "tests");
+        let is_test = relative
+            .with_extension("")
+            .iter()
+            .any(|part| part == "tests");
         if parts.next().is_none() || is_test {
             continue;
         }

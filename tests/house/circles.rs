@@ -1,5 +1,5 @@
 //! Files of one room do not use each other in circles. A `mod.rs`, or a file with a folder of its own, holds what the
-//! files below it share: that these use it does not count.
+//! files below it share: that these use it does not count. What it uses itself counts, as of any other file.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -45,32 +45,75 @@ fn expand(prefix: &str, tree: &str, into: &mut Vec<(String, String)>) {
             expand(&format!("{prefix}{head}"), inner, into);
         } else {
             let (path, name) = part.split_once(" as ").unwrap_or((part, part));
+            let path = format!("{prefix}{path}");
+            let path = path.strip_suffix("::self").unwrap_or(&path);
+            let name = if name == "self" { path } else { name };
             let name = name.rsplit("::").next().unwrap();
-            into.push((format!("{prefix}{path}"), name.to_owned()));
+            into.push((path.to_owned(), name.to_owned()));
         }
     }
 }
 
-/// What `use` names in a file, and the paths that it writes out elsewhere.
-fn paths(code: &str) -> Vec<(String, String)> {
-    let mut found = Vec::new();
-    for statement in code.split(';') {
-        let tree = statement.rsplit_once("use ").map(|(_, tree)| tree);
-        if let Some(tree) = tree.filter(|tree| !tree.contains('(')) {
-            expand(
-                "",
-                &tree.split_whitespace().collect::<Vec<_>>().join(" "),
-                &mut found,
-            );
-        }
-    }
+/// A path that a file names, the name that it gets there, and whether the file only hands it on.
+type Named = (String, String, bool);
+
+fn words(code: &str) -> impl Iterator<Item = &str> {
     let is_name = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
-    for word in code.split(|c| !is_name(c)) {
-        if ["crate::", "super::", "self::"]
-            .iter()
-            .any(|from| word.starts_with(from))
-        {
-            found.push((word.trim_end_matches(':').to_owned(), String::new()));
+    code.split(move |c| !is_name(c))
+        .map(|word| word.trim_end_matches(':'))
+}
+
+/// What `use` names in a file, and the paths that it writes out elsewhere: from the root, from itself, from a module
+/// of its own, or from a name that `use` brought.
+fn paths(code: &str) -> Vec<Named> {
+    let (mut used, mut handed_on, mut rest) = (Vec::new(), Vec::new(), String::new());
+    for statement in code.split(';') {
+        let tree = statement
+            .rsplit_once("use ")
+            .filter(|(_, tree)| !tree.contains('('));
+        let Some((before, tree)) = tree else {
+            rest += statement;
+            rest.push(';');
+            continue;
+        };
+        rest += before;
+        let visibility = before.lines().next_back().unwrap_or_default();
+        let is_handed_on = visibility.trim_start().starts_with("pub");
+        let into = if is_handed_on {
+            &mut handed_on
+        } else {
+            &mut used
+        };
+        let tree = tree.split_whitespace().collect::<Vec<_>>().join(" ");
+        expand("", &tree, into);
+    }
+    // Texts in quotation marks name nothing.
+    let plain = rest.lines().flat_map(|line| line.split('"').step_by(2));
+    let at_home: BTreeSet<&str> = plain
+        .flat_map(words)
+        .flat_map(|word| word.split("::"))
+        .collect();
+    let is_used = |name: &str| at_home.contains(name);
+    let own = used.into_iter().map(|(path, name)| (path, name, false));
+    let others = handed_on.into_iter().map(|(path, name)| {
+        let is_only_handed_on = !is_used(&name);
+        (path, name, is_only_handed_on)
+    });
+    let mut found: Vec<Named> = own.chain(others).collect();
+    let brought: BTreeMap<String, String> = found
+        .iter()
+        .map(|(path, name, _)| (name.clone(), path.clone()))
+        .collect();
+    for word in words(&rest) {
+        let Some((head, tail)) = word.split_once("::") else {
+            continue;
+        };
+        if ["crate", "super", "self"].contains(&head) {
+            found.push((word.to_owned(), String::new(), false));
+        } else if let Some(path) = brought.get(head) {
+            found.push((format!("{path}::{tail}"), String::new(), false));
+        } else if code.contains(&format!("mod {head};")) {
+            found.push((format!("self::{word}"), String::new(), false));
         }
     }
     found
@@ -98,7 +141,8 @@ fn absolute(from: &[String], path: &str) -> Vec<String> {
     place
 }
 
-/// The file in which a path ends, names that a `mod.rs` hands on followed to where they stand.
+/// The file in which a path ends, names that a `mod.rs` hands on followed to where they stand; none for a path that
+/// only names a folder, as what is used of it is written elsewhere.
 fn resolve(files: &Files, path: &[String], depth: usize) -> Option<String> {
     for length in (1..=path.len()).rev() {
         let base = path[..length].join("/");
@@ -108,15 +152,15 @@ fn resolve(files: &Files, path: &[String], depth: usize) -> Option<String> {
         };
         let handed_on = path.get(length).and_then(|wanted| {
             let mut all = paths(&files[&file]).into_iter();
-            all.find(|(_, name)| name == wanted)
+            all.find(|(_, name, _)| name == wanted)
         });
         return match handed_on {
-            Some((to, _)) if depth < 6 => {
+            Some((to, ..)) if depth < 6 => {
                 let mut next = absolute(&path[..length], &to);
                 next.extend_from_slice(&path[length + 1..]);
                 resolve(files, &next, depth + 1)
             }
-            _ => Some(file),
+            _ => (length < path.len() || !file.ends_with("mod.rs")).then_some(file),
         };
     }
     None
@@ -127,10 +171,12 @@ fn uses(files: &Files) -> Uses {
     let mut uses = Uses::new();
     for (file, code) in files {
         let own = module(file);
-        for (path, _) in paths(code) {
+        let named = paths(code)
+            .into_iter()
+            .filter(|(.., is_handed_on)| !is_handed_on);
+        for (path, ..) in named {
             let to = resolve(files, &absolute(&own, &path), 0);
             let to = to.filter(|to| to != file && room(to) == room(file));
-            let to = to.filter(|to| !to.ends_with("mod.rs") && !file.ends_with("mod.rs"));
             let to = to.filter(|to| !own.starts_with(&module(to)));
             uses.entry(file.clone()).or_default().extend(to);
         }
@@ -179,6 +225,37 @@ fn files_of_a_room_do_not_use_each_other_in_circles() {
     let uses = uses(&found.iter().filter_map(file).collect());
     assert!(uses["continuation/sweep.rs"].contains("continuation/point.rs"));
     assert_eq!(circle(&uses), None);
+}
+
+#[test]
+fn the_reader_sees_circles_through_a_list_of_modules() {
+    let files = |user: &str| -> Files {
+        let all = [
+            ("a/mod.rs", "mod kinds;\nmod user;"),
+            (
+                "a/kinds/mod.rs",
+                "mod one;\nconst ALL: [Kind; 1] = [one::KIND];",
+            ),
+            (
+                "a/kinds/one.rs",
+                "use crate::a::user::Page;\nuse super::Kind;",
+            ),
+            ("a/kinds/two.rs", "pub struct Two;"),
+            ("a/user.rs", user),
+        ];
+        all.map(|(name, text)| (name.to_owned(), text.to_owned()))
+            .into()
+    };
+    assert_eq!(circle(&uses(&files("use super::kinds;"))), None);
+    assert_eq!(circle(&uses(&files("use super::kinds::two::Two;"))), None);
+    for user in [
+        "use super::kinds::ALL;",
+        "use super::kinds;\nfn f() {\n    kinds::ALL\n}",
+    ] {
+        assert_eq!(circle(&uses(&files(user))).unwrap().len(), 3, "{user}");
+    }
+    let direct = "use super::kinds::{self};\nfn f() {\n    kinds::one::f()\n}";
+    assert_eq!(circle(&uses(&files(direct))).unwrap().len(), 2);
 }
 
 #[test]

@@ -3,14 +3,15 @@
 
 use std::sync::Arc;
 
-use pbif::generator::{GeneratorOptions, assemble, automatic_grading, cell_masses};
+use pbif::generator::{automatic_grading, cell_masses};
 use pbif::space::{Axis, CellSpace};
-use pbif::stationary::generator::{RateOptions, RateSolver};
 use pbif::system::{System, registry};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256Plus;
 use rand_xoshiro::rand_core::SeedableRng;
 use rayon::prelude::*;
+
+use crate::common::steady::{masses, means};
 
 const KAPPA: f64 = 0.02;
 const MU: f64 = 1.0;
@@ -162,23 +163,14 @@ fn system(alpha: f64) -> Arc<dyn System> {
 /// The same quantities by the generator.
 fn by_generator(alpha: f64, space: &CellSpace) -> Vec<f64> {
     let system = system(alpha);
-    let generator = assemble(&*system, space, &GeneratorOptions::default()).unwrap();
-    let mut solver = RateSolver::new(space.clone(), RateOptions::default());
-    let state = solver
-        .solve(&generator.matrix, &generator.escape, None)
-        .unwrap();
-    assert!(state.info.converged);
-    let mut moments = [0.0; 4];
-    for (cell, unknown) in state.mass.iter().enumerate() {
-        let node = |axis: usize| space.axes()[axis].nodes()[space.position(cell, axis)];
-        let (x, y, z) = (node(0), node(1), node(2));
-        for (sum, value) in moments.iter_mut().zip([x * x, y * y, z * z, x * z]) {
-            *sum += unknown * value;
-        }
-    }
+    let unknowns = masses(&*system, space);
+    let moments = |state: &[f64]| {
+        let (x, y, z) = (state[0], state[1], state[2]);
+        [x * x, y * y, z * z, x * z]
+    };
     let mut sums = vec![0.0; quantities(space)];
-    sums[..4].copy_from_slice(&moments);
-    let masses = cell_masses(&*system, space, &state.mass);
+    sums[..4].copy_from_slice(&means(space, &unknowns, moments));
+    let masses = cell_masses(&*system, space, &unknowns);
     for (cell, mass) in masses.iter().enumerate() {
         add_cell(space, cell, *mass, &mut sums);
     }

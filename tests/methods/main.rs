@@ -7,6 +7,9 @@
     clippy::print_stderr
 )]
 
+#[path = "../common/mod.rs"]
+mod common;
+
 mod agreement;
 mod calibration;
 mod damping;

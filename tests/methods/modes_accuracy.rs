@@ -4,11 +4,12 @@
 use pbif::cancellation::Cancellation;
 use pbif::continuation::{DensitySource as _, PointStatus};
 use pbif::density::Observable;
-use pbif::generator::{GeneratorOptions, assemble, automatic_grading};
+use pbif::generator::automatic_grading;
 use pbif::method::{GeneratorMethodOptions, GeneratorSource, Problem};
 use pbif::space::{Axis, CellSpace};
-use pbif::stationary::generator::{RateOptions, RateSolver};
 use pbif::system::{Family, Path, registry};
+
+use crate::common::steady::{masses, means};
 
 /// α, then E[x²], E[y²], E[z²] and E[xz] on 200 × 160 cells × 10 modes of [-3, 3] × [-3.2, 3.2], y graded to 0.02.
 /// 140 × 140 cells differ from it by at most 1e-5.
@@ -40,21 +41,11 @@ fn moments(alpha: f64, cells: usize, modes: usize) -> [f64; 4] {
     let y = Axis::graded(-3.0, 3.0, cells, &grading).unwrap();
     let z = Axis::modes(-bound, bound, modes).unwrap();
     let space = CellSpace::new(vec![x, y, z]).unwrap();
-    let generator = assemble(&*dahl, &space, &GeneratorOptions::default()).unwrap();
-    let mut solver = RateSolver::new(space.clone(), RateOptions::default());
-    let steady = solver
-        .solve(&generator.matrix, &generator.escape, None)
-        .unwrap();
-    assert!(steady.info.converged);
-    let mut sums = [0.0; 4];
-    for (cell, u) in steady.mass.iter().enumerate() {
-        let place = |axis: usize| space.axes()[axis].nodes()[space.position(cell, axis)];
-        let (x, y, z) = (place(0), place(1), place(2));
-        for (sum, value) in sums.iter_mut().zip([x * x, y * y, z * z, x * z]) {
-            *sum += u * value;
-        }
-    }
-    sums
+    let moments = |state: &[f64]| {
+        let (x, y, z) = (state[0], state[1], state[2]);
+        [x * x, y * y, z * z, x * z]
+    };
+    means(&space, &masses(&*dahl, &space), moments)
 }
 
 fn error(found: [f64; 4], exact: [f64; 4]) -> f64 {

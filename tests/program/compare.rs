@@ -96,8 +96,8 @@ fn methods_stand_to_each_other_as_the_exact_density_says() {
 #[test]
 fn an_earlier_comparison_is_kept_and_numbers_repeat_on_any_threads() {
     let room = Room::new();
-    let few = "figures.at=[0.005] figures.formats=[\"svg\"] method.error=0.03 method.samples=100 cells.x.count=30 \
-               cells.y.count=30";
+    let few = "figures.at=[0.005] figures.formats=[\"svg\"] system.parameters.kappa=0.1 system.parameters.sigma2=0.1 \
+               method.error=0.03 method.samples=100 cells.x.count=30 cells.y.count=30";
     let tables =
         || ["densities.csv", "distances.csv"].map(|name| room.read(&format!("out/{name}")));
     compare(&room, few);

@@ -8,8 +8,10 @@ use crate::common::table::Table;
 
 const GENERATOR: &str =
     "method.kind=generator cells.x.count=24 cells.y.count=24 sweep.points=4 locate.tolerance=5e-3";
-const SAMPLED: &str = "method.kind=sgcm cells.x.count=24 cells.y={from=-5.5,to=5.5,count=24} sweep.points=4 \
-                       method.samples=300 locate.tolerance=5e-3";
+/// Damped well, so that trajectories forget their start soon, with the same ratios of noise and friction to damping.
+const SAMPLED: &str = "method.kind=sgcm system.parameters.kappa=0.1 system.parameters.sigma2=0.1 sweep.from=-0.2 \
+                       sweep.to=0.1 cells.x.count=24 cells.y={from=-5.5,to=5.5,count=24} sweep.points=4 \
+                       method.samples=300 locate.tolerance=5e-2";
 const SAMPLED_LINE: &str =
     "method.kind=sgcm sweep.points=5 method.samples=2000 locate.tolerance=0.2";
 const LINE: &str = "method.kind=generator sweep.points=9";

@@ -6,25 +6,12 @@ use std::sync::Arc;
 use pbif::cancellation::Cancellation;
 use pbif::generator::GeneratorOptions;
 use pbif::passage::{Passage, Start, Timed, WithError, timed};
-use pbif::space::{Axis, CellSpace};
 use pbif::stationary::generator::RateOptions;
-use pbif::system::{Model, TypedModel, regions};
+use pbif::system::{Model, regions};
 use statrs::function::gamma::gamma;
 
 use crate::common::numbers::{Numbers, given};
-
-/// A model by its equations and the amplitudes of its noises.
-fn model(equations: &[(&str, &str)], noise: &[(&str, &str)]) -> Arc<Model> {
-    let names: Vec<&str> = equations.iter().map(|(axis, _)| *axis).collect();
-    let mut model = TypedModel::new("model", "Model", names);
-    for (axis, drift) in equations {
-        model = model.with_equation(*axis, *drift);
-    }
-    for (axis, amplitude) in noise {
-        model = model.with_noise(*axis, [*amplitude]);
-    }
-    model.build().unwrap()
-}
+use crate::common::steady::{even_cells, model};
 
 /// The numbers of a passage from a state until an inequality holds.
 fn passage(model: &Arc<Model>, until: &str, start: &[f64], axes: &[(f64, f64, usize)]) -> Timed {
@@ -39,10 +26,7 @@ fn asked(
     axes: &[(f64, f64, usize)],
     (times, quantiles): (&[f64], &[f64]),
 ) -> Timed {
-    let axes = axes
-        .iter()
-        .map(|&(from, to, count)| Axis::uniform(from, to, count).unwrap());
-    let space = CellSpace::new(axes.collect()).unwrap();
+    let space = even_cells(axes);
     let until = regions(model, &[("until", until)]).unwrap().remove(0);
     let asked = Passage {
         until: until.level().bind(&model.values(&[]).unwrap()).unwrap(),

@@ -518,6 +518,23 @@ fn print(scores: &[(&str, Score)]) {
     }
 }
 
+/// All that is located holds the truth.
+#[track_caller]
+fn print_true(scores: &[(&str, Score)]) {
+    print(scores);
+    for (name, score) in scores {
+        assert_eq!(score.false_located, 0, "{name}");
+    }
+}
+
+/// Stated errors hold in nineteen of twenty cases.
+#[track_caller]
+fn print_nearly_true(scores: &[(&str, Score)]) {
+    print(scores);
+    let sum = |of: fn(&Score) -> usize| scores.iter().map(|(_, score)| of(score)).sum::<usize>();
+    assert!(20 * sum(|score| score.false_located) <= sum(|score| score.located));
+}
+
 #[test]
 fn what_is_located_in_random_systems_holds_the_truth() {
     let mut scores = run(cases(one_axis, 0..24));
@@ -533,7 +550,7 @@ fn what_is_located_in_random_systems_holds_the_truth() {
 #[test]
 fn what_an_end_of_the_range_makes_is_not_located() {
     let scores = run(cases(one_axis, 7011..7012));
-    assert!(scores.iter().all(|(_, score)| score.false_located == 0));
+    print_true(&scores);
 }
 
 /// The density at the centre is e⁻⁷⁰ of that on the ring: what a solver leaves there has curvatures of any sign.
@@ -543,15 +560,14 @@ fn what_the_solver_leaves_at_a_centre_is_not_located() {
         .into_iter()
         .filter_map(|seed| Some((seed, energy(seed)?))));
     assert_eq!(scores.len(), 1);
-    assert!(scores.iter().all(|(_, score)| score.false_located == 0));
+    print_true(&scores);
 }
 
 #[test]
 #[ignore = "prints the table of docs/location.md"]
 fn one_axis_in_full() {
     let scores = run(cases(one_axis, 0..150));
-    print(&scores);
-    assert!(scores.iter().all(|(_, score)| score.false_located == 0));
+    print_true(&scores);
 }
 
 #[test]
@@ -559,6 +575,5 @@ fn one_axis_in_full() {
 fn two_axes_in_full() {
     let mut scores = run(cases(energy, 1000..1030));
     scores.extend(run(cases(potential, 2000..2030)));
-    print(&scores);
-    assert!(scores.iter().all(|(_, score)| score.false_located == 0));
+    print_true(&scores);
 }

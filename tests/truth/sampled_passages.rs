@@ -8,8 +8,9 @@ use pbif::monte_carlo::{
 };
 use pbif::sampling::Integrator;
 use pbif::space::{Axis, CellSpace};
-use pbif::system::{TypedModel, regions};
+use pbif::system::regions;
 
+use crate::common::steady::model;
 use crate::passages::brownian_survival;
 
 /// Axes with their drifts, or with the amplitudes of their noises.
@@ -30,15 +31,7 @@ fn follow(
     (from, until): (From<'_>, &str),
     Effort(time_step, paths, longest): Effort,
 ) -> ExitTimes {
-    let names: Vec<&str> = equations.iter().map(|(axis, _)| *axis).collect();
-    let mut model = TypedModel::new("model", "Model", names);
-    for (axis, drift) in equations {
-        model = model.with_equation(*axis, *drift);
-    }
-    for (axis, amplitude) in noise {
-        model = model.with_noise(*axis, [*amplitude]);
-    }
-    let model = model.build().unwrap();
+    let model = model(equations, noise);
     let values = model.values(&[]).unwrap();
     let bound = |text: &str| {
         let region = regions(&model, &[("one", text)]).unwrap().remove(0);

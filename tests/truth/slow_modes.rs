@@ -3,56 +3,24 @@
 use std::sync::Arc;
 
 use pbif::cancellation::Cancellation;
-use pbif::generator::{GeneratorOptions, assemble};
-use pbif::space::{Axis, CellSpace};
+use pbif::generator::GeneratorOptions;
 use pbif::spectrum::{SlowModes, Steady, slow_modes};
-use pbif::stationary::generator::{RateOptions, RateSolver};
-use pbif::system::{Model, TypedModel};
+use pbif::stationary::generator::RateOptions;
+use pbif::system::Model;
 
 use crate::common::numbers::{Numbers, given};
-
-/// A model by its equations and the amplitudes of its noises.
-pub(crate) fn model(equations: &[(&str, &str)], noise: &[(&str, &str)]) -> Arc<Model> {
-    let names: Vec<&str> = equations.iter().map(|(axis, _)| *axis).collect();
-    let mut model = TypedModel::new("model", "Model", names);
-    for (axis, drift) in equations {
-        model = model.with_equation(*axis, *drift);
-    }
-    for (axis, amplitude) in noise {
-        model = model.with_noise(*axis, [*amplitude]);
-    }
-    model.build().unwrap()
-}
+use crate::common::steady::{even_cells, masses, model};
 
 /// The slowest modes of a model on even cells.
 fn modes(model: &Arc<Model>, axes: &[(f64, f64, usize)], wanted: usize) -> SlowModes {
-    let axes: Vec<Axis> = axes
-        .iter()
-        .map(|&(from, to, count)| Axis::uniform(from, to, count).unwrap())
-        .collect();
-    let closed = vec![[false; 2]; axes.len()];
-    let space = CellSpace::new(axes).unwrap();
-    let (options, rates) = (GeneratorOptions::default(), RateOptions::default());
-    let system = model.system_with(&[]).unwrap();
-    let generator = assemble(&*system, &space, &options).unwrap();
-    let mut solver = RateSolver::new(space.clone(), rates);
-    let found = solver
-        .solve(&generator.matrix, &generator.escape, None)
-        .unwrap();
+    let (system, space) = (model.system_with(&[]).unwrap(), even_cells(axes));
     let steady = Steady {
-        masses: &found.mass,
-        closed: &closed,
+        masses: &masses(&*system, &space),
+        closed: &vec![[false; 2]; axes.len()],
     };
-    let settings = (&options, &rates);
-    slow_modes(
-        &system,
-        &space,
-        wanted,
-        steady,
-        settings,
-        &Cancellation::new(),
-    )
-    .unwrap()
+    let settings = (&GeneratorOptions::default(), &RateOptions::default());
+    let never = Cancellation::new();
+    slow_modes(&system, &space, wanted, steady, settings, &never).unwrap()
 }
 
 /// Whether each mode is an exact one, decay rate and frequency, each another one, within its error, which must be

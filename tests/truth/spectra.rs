@@ -5,45 +5,24 @@ use std::time::Instant;
 
 use nalgebra::{Complex, Matrix2};
 use pbif::cancellation::Cancellation;
-use pbif::generator::{GeneratorOptions, assemble};
-use pbif::space::{Axis, CellSpace};
+use pbif::generator::GeneratorOptions;
 use pbif::spectrum::{Power, PowerQuestion, Spectrum, StateFunction, Steady, power_spectra};
-use pbif::stationary::generator::{RateOptions, RateSolver};
+use pbif::stationary::generator::RateOptions;
 use pbif::system::Model;
 
 use crate::common::numbers::{Numbers, given};
-use crate::slow_modes::model;
+use crate::common::steady::{even_cells, masses, model};
 
 /// Spectra of a model on even cells.
 fn spectra(model: &Arc<Model>, axes: &[(f64, f64, usize)], question: &PowerQuestion<'_>) -> Power {
-    let axes: Vec<Axis> = axes
-        .iter()
-        .map(|&(from, to, count)| Axis::uniform(from, to, count).unwrap())
-        .collect();
-    let closed = vec![[false; 2]; axes.len()];
-    let space = CellSpace::new(axes).unwrap();
-    let (options, rates) = (GeneratorOptions::default(), RateOptions::default());
-    let system = model.system_with(&[]).unwrap();
-    let generator = assemble(&*system, &space, &options).unwrap();
-    let mut solver = RateSolver::new(space.clone(), rates);
-    let found = solver
-        .solve(&generator.matrix, &generator.escape, None)
-        .unwrap();
+    let (system, space) = (model.system_with(&[]).unwrap(), even_cells(axes));
     let steady = Steady {
-        masses: &found.mass,
-        closed: &closed,
+        masses: &masses(&*system, &space),
+        closed: &vec![[false; 2]; axes.len()],
     };
-    let settings = (&options, &rates);
-    let clock = Instant::now();
-    let found = power_spectra(
-        &system,
-        &space,
-        question,
-        steady,
-        settings,
-        &Cancellation::new(),
-    )
-    .unwrap();
+    let settings = (&GeneratorOptions::default(), &RateOptions::default());
+    let (never, clock) = (Cancellation::new(), Instant::now());
+    let found = power_spectra(&system, &space, question, steady, settings, &never).unwrap();
     println!("{:?} in {:.2} s", found.work, clock.elapsed().as_secs_f64());
     found
 }

@@ -151,9 +151,10 @@ impl Crossed {
         let Some(gap) = self.sweep.gap(row, curves) else {
             return "no curve of its indicator crosses the sweep".to_owned();
         };
-        let words = match gap.gap <= gap.error {
-            true => "within the errors of both",
-            false => "beyond the errors of both",
+        let words = if gap.gap <= gap.error {
+            "within the errors of both"
+        } else {
+            "beyond the errors of both"
         };
         format!(
             "{:.1e} of the sides of the box from C{}, {words}, {:.1e}",

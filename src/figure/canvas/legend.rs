@@ -1,4 +1,4 @@
-//! Legends: samples with their meaning, in rows outside of the panels, so that no data are covered.
+//! Legends: swatches with their meaning, in rows outside of the panels, so that no data are covered.
 
 use plotters_backend::text_anchor::HPos;
 
@@ -9,9 +9,9 @@ use super::style::{
     BLACK, CURVE_LINE, Colour, ERROR_LINE, INK, MARGIN, PAPER, Stroke, TEXT, TICK_TEXT, WHITE,
 };
 
-/// Length of a sample, in pixels.
+/// Length of a swatch, in pixels.
 const SAMPLE: f64 = 30.0;
-/// Gap between a sample and its text.
+/// Gap between a swatch and its text.
 const GAP: f64 = 6.0;
 /// Gap between two entries.
 const BETWEEN: f64 = 20.0;
@@ -20,7 +20,7 @@ pub(crate) const ROW: f64 = 1.5 * TEXT;
 
 /// What stands for an entry.
 #[derive(Clone, Copy)]
-pub(crate) enum Sample {
+pub(crate) enum Swatch {
     /// A curve.
     Curve(Stroke),
     /// A symbol with an error bar.
@@ -43,17 +43,17 @@ pub(crate) enum Sample {
 
 /// A legend laid out in rows.
 pub(crate) struct Legend {
-    /// Sample, text, and place of the sample's left end: pixels from the left, number of the row.
-    entries: Vec<(Sample, String, f64, usize)>,
+    /// Swatch, text, and place of the swatch's left end: pixels from the left, number of the row.
+    entries: Vec<(Swatch, String, f64, usize)>,
     rows: Vec<f64>,
 }
 
 impl Legend {
     /// Lays out entries (texts are markup) in rows no wider than `width`.
-    pub(crate) fn new(look: &Look, entries: Vec<(Sample, String)>, width: f64) -> Self {
+    pub(crate) fn new(look: &Look, entries: Vec<(Swatch, String)>, width: f64) -> Self {
         let mut rows: Vec<f64> = Vec::new();
         let mut placed = Vec::new();
-        for (sample, text) in entries {
+        for (swatch, text) in entries {
             let entry = SAMPLE + GAP + letters::text_width(look, &text, TICK_TEXT, false);
             let left = match rows.last_mut() {
                 Some(row) if *row + BETWEEN + entry <= width => {
@@ -66,7 +66,7 @@ impl Legend {
                     0.0
                 }
             };
-            placed.push((sample, text, left, rows.len() - 1));
+            placed.push((swatch, text, left, rows.len() - 1));
         }
         Self {
             entries: placed,
@@ -81,52 +81,52 @@ impl Legend {
 
     /// Draws it from `top` down, its rows centred on `middle` as far as the page's margins let them.
     pub(crate) fn draw(&self, page: &Page, middle: f64, top: f64) {
-        for (sample, text, left, row) in &self.entries {
+        for (swatch, text, left, row) in &self.entries {
             let most = page.width() - MARGIN - self.rows[*row];
             let x = (middle - 0.5 * self.rows[*row]).min(most).max(MARGIN) + left;
             let y = top + (*row as f64 + 0.5) * ROW;
-            draw_sample(page, *sample, (x, y));
+            draw_swatch(page, *swatch, (x, y));
             page.text((x + SAMPLE + GAP, y), small(text.as_str(), HPos::Left, INK));
         }
     }
 }
 
-fn draw_sample(page: &Page, sample: Sample, (x, y): (f64, f64)) {
+fn draw_swatch(page: &Page, swatch: Swatch, (x, y): (f64, f64)) {
     let line = [(x, y), (x + SAMPLE, y)];
     let rect = Rectangle::new((x, y - 0.5 * TICK_TEXT), (SAMPLE, TICK_TEXT));
     let fill = |colour| page.draw(&rect.corners(), Shape::Area(colour));
     let heat = |share: f64| fill(Colour::fixed(page.look().colours.colour(share)));
     let middle = (x + 0.5 * SAMPLE, y);
-    match sample {
-        Sample::Curve(stroke) => page.draw(&line, Shape::Line(stroke)),
-        Sample::Symbol(colour) => {
+    match swatch {
+        Swatch::Curve(stroke) => page.draw(&line, Shape::Line(stroke)),
+        Swatch::Symbol(colour) => {
             let end = |sign: f64| (middle.0, y + sign * 0.55 * TICK_TEXT);
             let bar = Stroke::solid(colour, ERROR_LINE);
             page.draw(&[end(-1.0), end(1.0)], Shape::Line(bar));
             page.mark(&[middle], symbol(0, colour));
         }
-        Sample::Marked(stroke, number) => {
+        Swatch::Marked(stroke, number) => {
             page.draw(&line, Shape::Line(stroke));
             page.mark(&[middle], symbol(number, stroke.colour));
         }
-        Sample::Peaks => {
+        Swatch::Peaks => {
             heat(0.5);
             page.mark(&line, peaks(&line));
         }
-        Sample::Valleys => {
+        Swatch::Valleys => {
             heat(0.5);
             page.mark(&line, valleys(&line));
         }
-        Sample::Plus => {
+        Swatch::Plus => {
             heat(0.8);
             page.mark(&[middle], plus());
         }
-        Sample::Ring => {
+        Swatch::Ring => {
             heat(0.2);
             page.mark(&[middle], ring());
         }
-        Sample::Box(colour) => fill(colour),
-        Sample::Hatched => {
+        Swatch::Box(colour) => fill(colour),
+        Swatch::Hatched => {
             super::hatch::draw(page, (rect.left, rect.right()), (rect.top, rect.bottom()));
         }
     }

@@ -137,13 +137,15 @@ fn text(text: &Text) -> String {
         Anchor::Middle => "middle",
         Anchor::End => "end",
     };
-    let turn = match text.is_upward {
-        true => format!(" transform=\"rotate(-90 {x} {y})\""),
-        false => String::new(),
+    let turn = if text.is_upward {
+        format!(" transform=\"rotate(-90 {x} {y})\"")
+    } else {
+        String::new()
     };
-    let weight = match text.line.is_bold {
-        true => " font-weight=\"bold\"",
-        false => "",
+    let weight = if text.line.is_bold {
+        " font-weight=\"bold\""
+    } else {
+        ""
     };
     format!(
         "<text x=\"{x}\" y=\"{}\" font-size=\"{}\" text-anchor=\"{anchor}\"{weight}{}{turn}>{}</text>",

@@ -12,9 +12,9 @@ use crate::figure::canvas::frame::Scale;
 use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Heading, Page, Rectangle};
 use crate::figure::canvas::style::{MARGIN, TEXT};
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::joint_map::{JointPoint, draw_map, windows, write_above};
 use crate::figure::parts::{caption, names};
+use crate::figure::print::{Figure, Print};
 
 /// Side of a map, in pixels.
 const SIDE: f64 = 165.0;

@@ -11,17 +11,17 @@ use super::marginals::{cells, within};
 use super::{Drawn, Sketch};
 use crate::compare::Comparison;
 use crate::figure::canvas::frame::{self, Scale};
-use crate::figure::canvas::legend::{self, Legend, Sample};
+use crate::figure::canvas::legend::{self, Legend, Swatch};
 use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
 use crate::figure::canvas::style::{ERROR_LINE, INK, MARGIN, Stroke, TEXT};
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::caption;
 use crate::figure::parts::joint_map::with_letter;
 use crate::figure::parts::names;
 use crate::figure::parts::table::{self, number};
 use crate::figure::parts::view;
 use crate::figure::parts::view::View;
+use crate::figure::print::{Figure, Print};
 
 /// Size of a panel, in pixels.
 const PANEL: (f64, f64) = (270.0, 165.0);
@@ -186,13 +186,13 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     Some(Figure::new(&page, caption, self::rows(comparison, is_marginal)).of_panels(count))
 }
 
-fn entries() -> Vec<(Sample, String)> {
+fn entries() -> Vec<(Swatch, String)> {
     let entry = |method: Method| match method {
         Method::MonteCarlo => (
-            Sample::Symbol(INK),
+            Swatch::Symbol(INK),
             format!("{} ± {ERRORS} standard errors", method.title()),
         ),
-        method => (Sample::Curve(stroke(method)), method.title().to_owned()),
+        method => (Swatch::Curve(stroke(method)), method.title().to_owned()),
     };
     Method::ALL.into_iter().map(entry).collect()
 }

@@ -10,14 +10,14 @@ use crate::continuation::curve::{
 };
 use crate::density::Observable;
 use crate::figure::canvas::frame::{self, Scale};
-use crate::figure::canvas::legend::{Legend, Sample};
+use crate::figure::canvas::legend::{Legend, Swatch};
 use crate::figure::canvas::page::{Heading, Lettering, Page, Panel, Rectangle, Shape, small};
 use crate::figure::canvas::style::{BIFURCATION, Colour, GREY, INK, MARGIN, PAPER, Stroke};
 use crate::figure::canvas::symbols;
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::crossed::Crossed;
 use crate::figure::parts::names;
 use crate::figure::parts::names::symbol_of;
+use crate::figure::print::{Figure, Print};
 use crate::system::Family;
 use crate::topology::IndicatorKind;
 
@@ -241,11 +241,11 @@ pub(super) fn entries<'c>(
     curves: impl IntoIterator<Item = &'c Curve> + Clone,
     family: &Family,
     rect: Rectangle,
-) -> Vec<(Sample, String)> {
-    let mut entries: Vec<(Sample, String)> = Vec::new();
+) -> Vec<(Swatch, String)> {
+    let mut entries: Vec<(Swatch, String)> = Vec::new();
     let mut add = |is_shown: bool, stroke: Stroke, words: String| {
         if is_shown && entries.iter().all(|known| known.1 != words) {
-            entries.push((Sample::Curve(stroke), words));
+            entries.push((Swatch::Curve(stroke), words));
         }
     };
     let shorter = rect.width.min(rect.height);

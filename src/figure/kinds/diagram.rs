@@ -11,16 +11,16 @@ use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::hatch;
 use crate::figure::canvas::heat::{self, Picture};
-use crate::figure::canvas::legend::{self, Legend, Sample};
+use crate::figure::canvas::legend::{self, Legend, Swatch};
 use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape};
 use crate::figure::canvas::style::{MARGIN, PNG_SCALE};
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::along::parameter_range;
 use crate::figure::parts::bifurcations::Labels;
 use crate::figure::parts::branches::{Branch, branches};
 use crate::figure::parts::meeting::{located, meet};
 use crate::figure::parts::view::{self, View, middles};
 use crate::figure::parts::{caption, names, table};
+use crate::figure::print::{Figure, Print};
 
 /// Size of the map on a page of its own width, in pixels, and that width.
 const MAP: (f64, f64) = (380.0, 250.0);
@@ -223,15 +223,15 @@ fn entries(
     observable: usize,
     followed: &[Vec<Branch>; 2],
     labels: &Labels<'_>,
-) -> Vec<(Sample, String)> {
+) -> Vec<(Swatch, String)> {
     let mut entries = Vec::new();
-    let mut add = |shown: bool, sample: Sample, text: &str| {
+    let mut add = |shown: bool, sample: Swatch, text: &str| {
         if shown {
             entries.push((sample, text.to_owned()));
         }
     };
-    add(!followed[0].is_empty(), Sample::Peaks, "peak");
-    add(!followed[1].is_empty(), Sample::Valleys, "valley");
+    add(!followed[0].is_empty(), Swatch::Peaks, "peak");
+    add(!followed[1].is_empty(), Swatch::Valleys, "valley");
     let missing = |point: &&Point| view::density(point, observable).is_none();
     let blank = || points.iter().filter(missing);
     let several = blank().any(|point| point.report.status == PointStatus::SeveralClasses);
@@ -240,7 +240,7 @@ fn entries(
     } else {
         "no steady state"
     };
-    add(blank().next().is_some(), Sample::Hatched, words);
+    add(blank().next().is_some(), Swatch::Hatched, words);
     entries.extend(labels.entries());
     entries
 }

@@ -3,12 +3,12 @@
 
 use super::Sketch;
 use crate::figure::canvas::frame::{self, Scale};
-use crate::figure::canvas::legend::{Legend, Sample};
+use crate::figure::canvas::legend::{Legend, Swatch};
 use crate::figure::canvas::page::{Heading, Page, Rectangle, Shape};
 use crate::figure::canvas::style::{INK, MARGIN, Stroke};
 use crate::figure::canvas::symbols;
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::caption::{number, version};
+use crate::figure::print::{Figure, Print};
 use crate::system::friction::pulled::{
     MOST_CYCLES, Pulled, closes, cycle, has_friction, steady_sliding, yielding_distance,
 };
@@ -137,14 +137,14 @@ impl<'a> Bench<'a> {
         page
     }
 
-    fn entries(&self) -> Vec<(Sample, String)> {
+    fn entries(&self) -> Vec<(Swatch, String)> {
         let steady = (!self.sliding.is_empty())
-            .then(|| (Sample::Curve(STEADY), "sliding steadily".to_owned()));
+            .then(|| (Swatch::Curve(STEADY), "sliding steadily".to_owned()));
         let symbol = self.model.axes.get(DISPLACEMENT);
         let symbol = symbol.map_or_else(String::new, |axis| symbols::variable(&axis.symbol));
         let loops = self.loops.iter().enumerate().map(|(number, (size, _))| {
             let words = format!("{symbol} within ±{}", symbols::value(*size));
-            (Sample::Curve(Stroke::curve(number)), words)
+            (Swatch::Curve(Stroke::curve(number)), words)
         });
         steady.into_iter().chain(loops).collect()
     }

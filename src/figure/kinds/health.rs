@@ -5,10 +5,10 @@ use crate::continuation::{Point, PointStatus, SweepResult};
 
 use super::{Drawn, Kind, Sketch};
 use crate::figure::canvas::style::Stroke;
-use crate::figure::figures::Print;
 use crate::figure::parts::along::{self, Curve, Track};
 use crate::figure::parts::caption;
 use crate::figure::parts::table::{self, number as number_of};
+use crate::figure::print::Print;
 
 /// Height of a panel, in pixels.
 const HEIGHT: f64 = 92.0;

@@ -10,16 +10,16 @@ use super::{Drawn, Kind};
 use crate::continuation::SweepResult;
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::heat::{self, Picture};
-use crate::figure::canvas::legend::{Legend, Sample};
+use crate::figure::canvas::legend::{Legend, Swatch};
 use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape};
 use crate::figure::canvas::style::{Colour, MARGIN, PNG_SCALE};
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::along::parameter_range;
 use crate::figure::parts::bifurcations::Labels;
 use crate::figure::parts::caption;
 use crate::figure::parts::names;
 use crate::figure::parts::table::{self, number as number_of};
+use crate::figure::print::{Figure, Print};
 
 /// Size of the map on a page of its own width, in pixels, and that width.
 const MAP: (f64, f64) = (390.0, 220.0);
@@ -169,7 +169,7 @@ fn draw(result: &SweepResult, number: usize, print: &Print<'_>) -> Drawn {
     let labels = Labels::new(look, result, Some(watched), range, (left, wide));
     let map = Rectangle::new((left, heading.height() + labels.height()), (wide, high));
     let entries = kinds.numbers.iter().zip(&kinds.colours);
-    let entries = entries.map(|(&kind, &colour)| (Sample::Box(Colour::fixed(colour)), words(kind)));
+    let entries = entries.map(|(&kind, &colour)| (Swatch::Box(Colour::fixed(colour)), words(kind)));
     let entries: Vec<_> = entries.chain(labels.entries()).collect();
     let legend = Legend::new(look, entries, width - 2.0 * MARGIN);
     let below = map.bottom() + Scale::below();

@@ -8,9 +8,9 @@ use crate::figure::canvas::frame::Scale;
 use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::Page;
 use crate::figure::canvas::style::MARGIN;
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::joint_map::{Joint, draw_map, levels, open_page, write_above};
 use crate::figure::parts::{caption, joint_sheet, names, table, view};
+use crate::figure::print::{Figure, Print};
 
 /// What a map is, for captions.
 const WAY: &str = "as a map with contours at LEVELS of its maximum";

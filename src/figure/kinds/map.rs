@@ -10,17 +10,17 @@ use crate::continuation::map::{RegimeMap, RegionPicture, RegionSample};
 use crate::density::Observable;
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::heat::Picture;
-use crate::figure::canvas::legend::{Legend, Sample};
+use crate::figure::canvas::legend::{Legend, Swatch};
 use crate::figure::canvas::letters;
 use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape, small};
 use crate::figure::canvas::style::{BLANK, Colour, INK, MARGIN, PAPER, Stroke, TICK_TEXT};
 use crate::figure::canvas::symbols;
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::crossed::Crossed;
 use crate::figure::parts::inset;
 use crate::figure::parts::names::{self, symbol_of};
 use crate::figure::parts::region_room::Room;
+use crate::figure::print::{Figure, Print};
 use crate::system::Family;
 use crate::topology::Signature;
 
@@ -224,7 +224,7 @@ impl Scene<'_> {
                 let text = words(*signature);
                 if places.iter().all(|placed| placed.words != text) {
                     let colour = Colour::fixed(self.tint(ground, kind));
-                    entries.push((Sample::Box(colour), symbols::plain(&text)));
+                    entries.push((Swatch::Box(colour), symbols::plain(&text)));
                 }
             }
         }

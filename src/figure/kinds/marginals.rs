@@ -7,14 +7,14 @@ use crate::density::{Density, EstimatedDensity, Observable};
 
 use super::{Drawn, Kind, Sketch};
 use crate::figure::canvas::frame::{self, Scale};
-use crate::figure::canvas::legend::{Legend, Sample};
+use crate::figure::canvas::legend::{Legend, Swatch};
 use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Heading, Page, Rectangle, Shape};
 use crate::figure::canvas::style::{MARGIN, Stroke, TEXT};
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::joint_map::{with_letter, write_above};
 use crate::figure::parts::view::View;
 use crate::figure::parts::{caption, names, table, view};
+use crate::figure::print::{Figure, Print};
 use crate::system::Family;
 
 /// Height of a panel on a page of its own width, in pixels, and that width.
@@ -136,7 +136,7 @@ pub(super) fn draw_overlaid(
     let wide = (page_width - gaps - lefts.iter().sum::<f64>()) / columns as f64;
     let heading = Heading::new(look, print.title, page_width);
     let entries = chosen.iter().enumerate().map(|(number, point)| {
-        let sample = Sample::Curve(Stroke::curve(number));
+        let sample = Swatch::Curve(Stroke::curve(number));
         (sample, names::at(family, point.value))
     });
     let legend = Legend::new(look, entries.collect(), page_width - 2.0 * MARGIN);

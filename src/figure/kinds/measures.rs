@@ -5,10 +5,10 @@ use super::{Drawn, Kind, Sketch};
 use crate::continuation::{Label, LevelCrossing, SweepResult};
 use crate::figure::canvas::style::{FRAME_LINE, GREY, Stroke};
 use crate::figure::canvas::symbols;
-use crate::figure::figures::Print;
 use crate::figure::parts::along::{self, Curve, Track};
 use crate::figure::parts::caption;
 use crate::figure::parts::table::{self, number};
+use crate::figure::print::Print;
 
 /// Height of a panel among others, and of one by itself, in pixels.
 const AMONG: f64 = 92.0;
@@ -43,7 +43,7 @@ pub(super) const KIND: Kind = Kind {
 
 /// A measure along the sweep.
 #[derive(Clone)]
-struct Along {
+struct MeasureSeries {
     name: String,
     unit: String,
     /// Parameter, value and error, which is zero where none is known.
@@ -52,7 +52,7 @@ struct Along {
     least: f64,
 }
 
-impl Along {
+impl MeasureSeries {
     /// Whether it is known to be positive, and changes by more than a linear axis shows.
     fn is_over_decades(&self) -> bool {
         let is_positive = self.values.iter().all(|(_, value, error)| value > error);
@@ -68,8 +68,8 @@ impl Along {
 }
 
 /// The measures that are not zero all along, in the order in which the points have them.
-fn measures(result: &SweepResult) -> Vec<Along> {
-    let mut found: Vec<Along> = Vec::new();
+fn measures(result: &SweepResult) -> Vec<MeasureSeries> {
+    let mut found: Vec<MeasureSeries> = Vec::new();
     for point in &result.points {
         for one in point
             .report
@@ -80,7 +80,7 @@ fn measures(result: &SweepResult) -> Vec<Along> {
             let value = (point.value, one.value, one.error.unwrap_or(0.0));
             match found.iter_mut().find(|known| known.name == one.name) {
                 Some(known) => known.values.push(value),
-                None => found.push(Along {
+                None => found.push(MeasureSeries {
                     name: one.name.clone(),
                     unit: one.unit.clone(),
                     values: vec![value],
@@ -93,7 +93,7 @@ fn measures(result: &SweepResult) -> Vec<Along> {
     for number in 0..found.len() {
         let unit = &found[number].unit;
         let alike = found.iter().filter(|one| one.unit == *unit && unit != "1");
-        found[number].least = ROUNDING * alike.map(Along::largest).fold(0.0, f64::max);
+        found[number].least = ROUNDING * alike.map(MeasureSeries::largest).fold(0.0, f64::max);
     }
     found
 }
@@ -106,7 +106,7 @@ fn crossings(result: &SweepResult) -> impl Iterator<Item = &LevelCrossing> {
 }
 
 /// Lines at the levels of a measure, and down to the parameter's values at which they are crossed.
-fn levels(result: &SweepResult, measure: &Along) -> Vec<Curve> {
+fn levels(result: &SweepResult, measure: &MeasureSeries) -> Vec<Curve> {
     let at = |end: Option<&(f64, f64, f64)>| end.map_or(0.0, |place| place.0);
     let (from, to) = (at(measure.values.first()), at(measure.values.last()));
     let values = measure.values.iter().map(|(_, value, _)| *value);
@@ -149,8 +149,8 @@ fn title(result: &SweepResult, name: &str) -> String {
 }
 
 /// A panel each; `None` without a measure.
-fn draw(result: &SweepResult, all: &[Along], (height, print): (f64, &Print<'_>)) -> Drawn {
-    let track = |one: &Along| {
+fn draw(result: &SweepResult, all: &[MeasureSeries], (height, print): (f64, &Print<'_>)) -> Drawn {
+    let track = |one: &MeasureSeries| {
         let values = one.values.iter();
         let unit = if one.unit == "1" {
             String::new()

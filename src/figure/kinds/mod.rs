@@ -21,8 +21,8 @@ mod spectrum;
 mod surface;
 mod time_to_accuracy;
 
-use super::figures::{Figure, Print};
 use super::parts::{names, pages, view};
+use super::print::{Figure, Print};
 use crate::compare::Comparison;
 use crate::continuation::{Point, SweepResult};
 use crate::density::Observable;

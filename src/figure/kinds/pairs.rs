@@ -9,8 +9,8 @@ use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Heading, Page, Rectangle};
 use crate::figure::canvas::space::Space;
 use crate::figure::canvas::style::{MARGIN, TEXT};
-use crate::figure::figures::Print;
 use crate::figure::parts::joint_map::{Joint, JointPoint, draw_map, with_letter, write_above};
+use crate::figure::print::Print;
 
 /// Width of a surface with its axes on a page of its own width, in pixels.
 const SURFACE: f64 = 330.0;

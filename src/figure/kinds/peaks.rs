@@ -5,12 +5,12 @@ use crate::topology::{Feature, FeatureKind, Verdict};
 
 use super::{Drawn, Kind};
 use crate::figure::canvas::style::Stroke;
-use crate::figure::figures::Print;
 use crate::figure::parts::along::{self, Curve, Track};
 use crate::figure::parts::branches::{Branch, branches};
 use crate::figure::parts::meeting::{located, meet};
 use crate::figure::parts::table::{self, number as number_of};
 use crate::figure::parts::{caption, names, view};
+use crate::figure::print::Print;
 
 /// Height of a panel, in pixels.
 const HEIGHT: f64 = 170.0;

@@ -12,9 +12,9 @@ use super::marginals::{Overlaid, draw_overlaid};
 use super::{Kind, Sketch, Sweep};
 use crate::figure::canvas::page::Page;
 use crate::figure::canvas::symbols;
-use crate::figure::figures::Print;
 use crate::figure::parts::joint_map::Joint;
 use crate::figure::parts::view;
+use crate::figure::print::Print;
 
 pub(super) const KIND: Kind = Kind {
     names: &["section", "conditional"],

@@ -9,15 +9,15 @@ use crate::continuation::{LevelCrossing, SweepResult};
 use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::heat::{self, Picture};
-use crate::figure::canvas::legend::{self, Legend, Sample};
+use crate::figure::canvas::legend::{self, Legend, Swatch};
 use crate::figure::canvas::look::{DECADES, Look};
 use crate::figure::canvas::page::{Heading, Page, Rectangle, Shape};
 use crate::figure::canvas::style::{MARGIN, PNG_SCALE};
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::along::parameter_range;
 use crate::figure::parts::bifurcations::Labels;
 use crate::figure::parts::view::middles;
 use crate::figure::parts::{caption, names, table};
+use crate::figure::print::{Figure, Print};
 
 /// Size of the map on a page of its own width, in pixels, and that width.
 const MAP: (f64, f64) = (380.0, 250.0);
@@ -82,7 +82,7 @@ fn draw(result: &SweepResult, asked: &Asked, print: &Print<'_>) -> Drawn {
     let peaks = peaks(result, asked, is_logarithmic, (from, to));
     let mut entries = Vec::new();
     if !peaks.is_empty() {
-        entries.push((Sample::Peaks, "highest maximum".to_owned()));
+        entries.push((Swatch::Peaks, "highest maximum".to_owned()));
     }
     entries.extend(labels.entries());
     let legend = Legend::new(look, entries, width - 2.0 * MARGIN);

@@ -4,12 +4,12 @@
 use super::{Drawn, Kind, Sketch, Sweep};
 use crate::continuation::{Fluctuations, Point, SweepResult};
 use crate::figure::canvas::frame::{self, Scale};
-use crate::figure::canvas::legend::{Legend, Sample};
+use crate::figure::canvas::legend::{Legend, Swatch};
 use crate::figure::canvas::page::{Heading, Page, Rectangle};
 use crate::figure::canvas::style::{MARGIN, Stroke};
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::along::{Curve, Track, draw_track};
 use crate::figure::parts::{caption, names, table};
+use crate::figure::print::{Figure, Print};
 use crate::system::{Family, SpectrumQuestion};
 
 /// Size of the panel on a page of its own width, in pixels, and that width.
@@ -59,9 +59,10 @@ pub(super) fn asked(family: &Family) -> Vec<Asked> {
     let of_pair = |&(one, other): &(usize, usize)| {
         let of = question.name((one, other));
         let symbol = |number: usize| names::fluctuating(family, &question.observables[number]);
-        let title = match one == other {
-            true => symbol(one),
-            false => format!("{}, {}", symbol(one), symbol(other)),
+        let title = if one == other {
+            symbol(one)
+        } else {
+            format!("{}, {}", symbol(one), symbol(other))
         };
         Asked {
             file: of.replace(", ", "_"),
@@ -265,7 +266,7 @@ impl Chart {
         let entries = track
             .curves
             .iter()
-            .map(|curve| (Sample::Curve(curve.stroke), curve.name.clone()));
+            .map(|curve| (Swatch::Curve(curve.stroke), curve.name.clone()));
         let legend = Legend::new(look, entries.collect(), width - 2.0 * MARGIN);
         let rect = Rectangle::new((left, heading.height()), (wide, high));
         let below = rect.bottom() + Scale::below();

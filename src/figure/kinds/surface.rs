@@ -10,8 +10,8 @@ use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Heading, Page, Rectangle};
 use crate::figure::canvas::space::{Heights, Ranges, Space};
 use crate::figure::canvas::style::{MARGIN, TEXT};
-use crate::figure::figures::Print;
 use crate::figure::parts::joint_map::{Joint, JointPoint, with_letter, write_above};
+use crate::figure::print::Print;
 
 /// Width of a single surface with its axes, in pixels.
 const SINGLE: f64 = 470.0;

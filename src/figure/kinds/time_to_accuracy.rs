@@ -7,14 +7,14 @@ use super::compared_marginals::stroke;
 use super::{Drawn, Sketch};
 use crate::compare::Comparison;
 use crate::figure::canvas::frame::{self, Scale};
-use crate::figure::canvas::legend::{self, Legend, Sample};
+use crate::figure::canvas::legend::{self, Legend, Swatch};
 use crate::figure::canvas::page::{Heading, Page, Rectangle, Shape};
 use crate::figure::canvas::style::{ERROR_LINE, INK, MARGIN, Stroke};
 use crate::figure::canvas::symbols;
-use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::caption;
 use crate::figure::parts::names;
 use crate::figure::parts::table::{self, number as number_of};
+use crate::figure::print::{Figure, Print};
 
 /// Size of the panel, in pixels.
 const PANEL: (f64, f64) = (390.0, 270.0);
@@ -85,7 +85,7 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     let methods = methods.filter(|(_, method)| shown(method));
     let methods: Vec<(usize, Method)> = methods.collect();
     let entries = methods.iter().map(|&(number, method)| {
-        let sample = Sample::Marked(line(method), number);
+        let sample = Swatch::Marked(line(method), number);
         (sample, method.title().to_owned())
     });
     let legend = Legend::new(look, entries.collect(), width - 2.0 * MARGIN);

@@ -11,11 +11,11 @@ use super::bifurcations::Labels;
 use super::caption;
 use super::names;
 use crate::figure::canvas::frame::{self, Scale};
-use crate::figure::canvas::legend::{self, Legend, Sample};
+use crate::figure::canvas::legend::{self, Legend, Swatch};
 use crate::figure::canvas::letters;
 use crate::figure::canvas::page::{Heading, Lettering, Page, Panel, Rectangle, Shape, lettering};
 use crate::figure::canvas::style::{GREY, MARGIN, Stroke, TEXT};
-use crate::figure::figures::{Figure, Print};
+use crate::figure::print::{Figure, Print};
 
 /// Width of the panels on a page of its own width, in pixels, and that width.
 const WIDTH: f64 = 400.0;
@@ -173,11 +173,11 @@ pub(crate) fn draw(
     let heading = Heading::new(look, print.title, width);
     let labels = |column: usize| Labels::new(look, result, own_of, range, (left(column), wide));
     let labels: Vec<Labels<'_>> = (0..columns).map(labels).collect();
-    let mut entries: Vec<(Sample, String)> = Vec::new();
+    let mut entries: Vec<(Swatch, String)> = Vec::new();
     for curve in panels.iter().flat_map(|(track, ..)| &track.curves) {
         let is_new = entries.iter().all(|(_, known)| *known != curve.name);
         if is_new && !curve.name.is_empty() && !curve.places.is_empty() {
-            entries.push((Sample::Curve(curve.stroke), curve.name.clone()));
+            entries.push((Swatch::Curve(curve.stroke), curve.name.clone()));
         }
     }
     entries.extend(labels[0].entries());

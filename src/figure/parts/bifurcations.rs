@@ -6,7 +6,7 @@ use plotters_backend::text_anchor::HPos;
 use crate::continuation::{BifurcationStatus, Label, SweepResult};
 use crate::density::Observable;
 
-use crate::figure::canvas::legend::Sample;
+use crate::figure::canvas::legend::Swatch;
 use crate::figure::canvas::look::{Look, on_heat};
 use crate::figure::canvas::page::{Page, Panel, Rectangle, Shape, small};
 use crate::figure::canvas::style::{
@@ -242,7 +242,7 @@ impl<'a> Labels<'a> {
     }
 
     /// Entries of a legend, for what is drawn of the diagram's own bifurcations.
-    pub(crate) fn entries(&self) -> Vec<(Sample, String)> {
+    pub(crate) fn entries(&self) -> Vec<(Swatch, String)> {
         let words = [
             (BifurcationStatus::Located, ""),
             (BifurcationStatus::Unresolved, ", unresolved"),
@@ -255,7 +255,7 @@ impl<'a> Labels<'a> {
                 .into_iter()
                 .filter(move |(status, _)| own().any(|label| label.status == *status));
             shown.map(move |(status, text)| {
-                let sample = Sample::Curve(stroke(kind, status));
+                let sample = Swatch::Curve(stroke(kind, status));
                 (sample, format!("{name}{text}"))
             })
         };

@@ -4,7 +4,7 @@ use super::names::symbol_of;
 use crate::continuation::BifurcationStatus;
 use crate::continuation::curve::{Plane, RowInPlane, SweepInPlane};
 use crate::density::Observable;
-use crate::figure::canvas::legend::Sample;
+use crate::figure::canvas::legend::Swatch;
 use crate::figure::canvas::page::{Panel, Shape};
 use crate::figure::canvas::style::{BIFURCATION, GREY, PAPER, Stroke};
 use crate::figure::canvas::symbols;
@@ -95,17 +95,17 @@ impl Crossed<'_> {
     }
 
     /// What the legend says of them.
-    pub(crate) fn entries(&self) -> Vec<(Sample, String)> {
-        let mut entries: Vec<(Sample, String)> = Vec::new();
+    pub(crate) fn entries(&self) -> Vec<(Swatch, String)> {
+        let mut entries: Vec<(Swatch, String)> = Vec::new();
         for sweep in self.sweeps {
             let name = &self.plane.sides()[sweep.side].parameter;
             let text = format!("sweep over {}", symbol_of(self.family, name));
             if entries.iter().all(|known| known.1 != text) {
-                entries.push((Sample::Curve(line()), text));
+                entries.push((Swatch::Curve(line()), text));
             }
         }
         if self.rows().next().is_some() {
-            entries.push((Sample::Symbol(BIFURCATION), "located by a sweep".to_owned()));
+            entries.push((Swatch::Symbol(BIFURCATION), "located by a sweep".to_owned()));
         }
         entries
     }

@@ -12,11 +12,11 @@ use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::contour::{GridValues, simplify};
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::heat::Picture;
-use crate::figure::canvas::legend::{self, Legend, Sample};
+use crate::figure::canvas::legend::{self, Legend, Swatch};
 use crate::figure::canvas::look::{Look, on_heat};
 use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
 use crate::figure::canvas::style::{MARGIN, Stroke, TEXT};
-use crate::figure::figures::Print;
+use crate::figure::print::Print;
 use crate::topology::{Feature, FeatureKind, Verdict};
 
 /// Contours are drawn at these shares of the largest density, and at those where colours are logarithmic.
@@ -210,15 +210,15 @@ pub(crate) fn write_above(page: &Page, map: Rectangle, markup: String) {
 }
 
 /// Legend of the marks that are drawn.
-fn entries(found: &[JointPoint<'_>]) -> Vec<(Sample, String)> {
+fn entries(found: &[JointPoint<'_>]) -> Vec<(Swatch, String)> {
     let any = |kind| {
         found
             .iter()
             .any(|found| found.present(kind).next().is_some())
     };
     let all = [
-        (any(FeatureKind::Peak), Sample::Plus, "peak"),
-        (any(FeatureKind::Crater), Sample::Ring, "crater"),
+        (any(FeatureKind::Peak), Swatch::Plus, "peak"),
+        (any(FeatureKind::Crater), Swatch::Ring, "crater"),
     ];
     let shown = all.into_iter().filter(|(shown, _, _)| *shown);
     shown

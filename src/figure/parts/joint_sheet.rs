@@ -2,7 +2,7 @@
 
 use plotters_backend::text_anchor::HPos;
 
-use crate::figure::figures::Print;
+use crate::figure::print::Print;
 
 use super::joint_map::{Joint, JointPoint, draw_map, levels, open_page, with_letter, write_above};
 use super::names;

@@ -194,9 +194,12 @@ mod tests {
         // Peaks at ± √(-value/4) below zero and at zero above, at values ± 0.1, ± 0.3, …; a valley between the two.
         let values: Vec<f64> = (-5..5).map(|i| 0.1 + 0.2 * f64::from(i)).collect();
         let peak = |value: f64| (-0.25 * value).max(0.0).sqrt();
-        let of = |value: &f64| match *value < 0.0 {
-            true => point(*value, Some(&[-peak(*value), peak(*value)])),
-            false => point(*value, Some(&[0.0])),
+        let of = |value: &f64| {
+            if *value < 0.0 {
+                point(*value, Some(&[-peak(*value), peak(*value)]))
+            } else {
+                point(*value, Some(&[0.0]))
+            }
         };
         let points: Vec<Point> = values.iter().map(of).collect();
         let window = (-1.0, 1.0);

@@ -2,7 +2,7 @@
 //! further pages.
 
 use crate::figure::canvas::look::Look;
-use crate::figure::figures::{Figure, Print};
+use crate::figure::print::{Figure, Print};
 
 /// Panels become no lower than this share of their usual height while another page would help.
 const LEAST: f64 = 0.72;

@@ -52,7 +52,7 @@ impl End {
 
 /// The exponent ν of the density p ~ u^ν at the distance u from a natural end; infinite where no power is strong
 /// enough. `None` where noise acts at the end, or for a system with more axes or with a period.
-pub fn exponent_at(system: &dyn System, axis: &Axis, end: End) -> Option<f64> {
+pub(crate) fn exponent_at(system: &dyn System, axis: &Axis, end: End) -> Option<f64> {
     if system.dimension() != 1 || system.facts().period.is_some() {
         return None;
     }

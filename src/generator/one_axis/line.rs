@@ -48,7 +48,7 @@ pub(super) struct Partition {
 
 /// The slope at a place, the first of equal ones being on the lower side.
 #[derive(Clone, Copy)]
-pub(super) struct Sample {
+pub(super) struct SlopeAt {
     pub(super) place: f64,
     pub(super) slope: f64,
     pub(super) error: f64,
@@ -143,7 +143,7 @@ impl Partition {
 
     /// Slopes at the ends of all parts and at the extrema on them, in ascending place: between two the slope is
     /// monotone.
-    pub(super) fn samples(&self) -> Vec<Sample> {
+    pub(super) fn samples(&self) -> Vec<SlopeAt> {
         let mut samples = Vec::with_capacity(2 * self.parts.len());
         for part in &self.parts {
             let (from, to) = (part.slope.from, part.slope.to);
@@ -153,7 +153,7 @@ impl Partition {
             let turning = steps.filter(|(a, b)| bend.at(*a) * bend.at(*b) < 0.0);
             let turns = turning.map(|(a, b)| zero(|x| bend.at(x), (a, b), bend.at(b) > 0.0));
             for place in [from].into_iter().chain(turns).chain([to]) {
-                samples.push(Sample {
+                samples.push(SlopeAt {
                     place,
                     slope: part.slope.at(place),
                     error: part.error,

@@ -14,7 +14,8 @@ mod profile;
 mod rule;
 mod series;
 
-pub use end::{End, exponent_at};
+pub use end::End;
+pub(crate) use end::exponent_at;
 pub use profile::profile;
 
 use crate::space::Axis;
@@ -36,12 +37,12 @@ pub struct OneAxis {
     pub moments: (f64, f64),
     /// ln ∫ (1/b²) exp ∫ (2a/b²) over the axis, the inner integral from its lower end: what the density is divided by.
     pub log_integral: f64,
-    /// Exponents of the density at the lower and the upper end, where these are natural ([`exponent_at`]).
+    /// Exponents of the density at the lower and the upper end, where these are natural (`exponent_at`).
     pub ends: [Option<f64>; 2],
 }
 
 /// The steady state without flux through the ends; `None` where drift and noise do not allow it: more than one axis,
-/// noise that vanishes inside or is not finite somewhere, and a natural end that takes all mass ([`exponent_at`]).
+/// noise that vanishes inside or is not finite somewhere, and a natural end that takes all mass (`exponent_at`).
 pub fn one_axis(system: &dyn System, axis: &Axis) -> Option<OneAxis> {
     if system.dimension() != 1 || system.facts().period.is_some() {
         return None;

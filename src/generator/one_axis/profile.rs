@@ -4,7 +4,7 @@
 //! extrema of the density, however narrow, and its own extrema are where the next peak and valley are born.
 
 use super::OneAxis;
-use super::line::{Part, Partition, STEEPEST, Sample, zero};
+use super::line::{Part, Partition, STEEPEST, SlopeAt, zero};
 use crate::density::{Extremum, Profile, SlopeJump, Turn};
 use crate::space::Axis;
 use crate::system::System;
@@ -37,12 +37,12 @@ pub fn profile(
 
 impl Partition {
     /// Peaks and valleys; `log_integral` is the logarithm of what the density is divided by.
-    fn extrema(&self, samples: &[Sample], log_integral: f64) -> Vec<Extremum> {
+    fn extrema(&self, samples: &[SlopeAt], log_integral: f64) -> Vec<Extremum> {
         let slope = |place: f64| self.part(place).map_or(0.0, |part| part.slope.at(place));
         let told = samples
             .iter()
             .filter(|one| one.slope.abs() > NOTHING * one.size);
-        let told: Vec<&Sample> = told.collect();
+        let told: Vec<&SlopeAt> = told.collect();
         let (Some(first), Some(last)) = (told.first(), told.last()) else {
             return Vec::new();
         };
@@ -126,7 +126,7 @@ impl Partition {
 const JUMP: f64 = 1e-8;
 
 /// The extrema of the slope, but for those at the ends and those that are rounding.
-fn turns(samples: &[Sample]) -> Vec<Turn> {
+fn turns(samples: &[SlopeAt]) -> Vec<Turn> {
     let mut turns = Vec::new();
     let Some(mut farthest) = samples.first() else {
         return turns;

@@ -42,9 +42,10 @@ impl Recorder<'_> {
         let mut words = format!("{} = {:.6}", family.parameter(), point.value);
         let status = point.report.status;
         // What is detected in a density that did not converge is of nothing.
-        let found = match status.is_resolved() {
-            true => point.detections.as_slice(),
-            false => &[],
+        let found = if status.is_resolved() {
+            point.detections.as_slice()
+        } else {
+            &[]
         };
         if found.is_empty() {
             words += &format!(": {}", status.word());

@@ -22,11 +22,11 @@ const MOST_SEGMENTS: usize = 16;
 
 /// What a point costs by the generator.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GeneratorCost {
+pub(crate) struct GeneratorCost {
     /// Bytes at work: the matrices, and factors and fronts at their peak.
-    pub bytes: f64,
+    pub(crate) bytes: f64,
     /// The factorisation that will be used, its memory and work. Most points of a sweep reuse a neighbour's.
-    pub factors: Estimate,
+    pub(crate) factors: Estimate,
 }
 
 impl GeneratorCost {

@@ -29,7 +29,7 @@ mod turns_tests;
 mod unknowns;
 
 pub(super) use coarse::rough_masses;
-pub use cost::GeneratorCost;
+pub(crate) use cost::GeneratorCost;
 pub(crate) use modes::{automatic_modes, change_by_more_modes};
 pub(crate) use one_axis::OneAxisFamily;
 pub use options::GeneratorMethodOptions;

@@ -24,7 +24,7 @@ pub struct GeneratorMethodOptions {
 
 impl GeneratorMethodOptions {
     /// On finer cells: a scheme of high order shows there what the cells of this space do.
-    pub fn cell_check(space: &CellSpace) -> CellCheck {
+    pub(crate) fn cell_check(space: &CellSpace) -> CellCheck {
         let finer = finer_axes(space);
         let pairs = finer.iter().zip(space.axes());
         let cut = pairs.filter(|(_, axis)| !axis.is_modes());

@@ -50,7 +50,7 @@ pub(super) fn rotation(
     (axis, name): (usize, &str),
     solver: &mut RateSolver,
 ) -> Result<[Measure; 2], MethodError> {
-    let along = Along::new(steady, axis);
+    let along = Coefficients::new(steady, axis);
     // Schemes differ along cells alone: where there are none, what they are said to differ by is what a solve with a
     // neighbour's factors leaves, and it is in the solver's part.
     let none = vec![0.0; steady.unknowns.len()];
@@ -91,7 +91,7 @@ pub(super) fn rotation(
 }
 
 /// Drift and noise along the axis at all nodes.
-struct Along<'a> {
+struct Coefficients<'a> {
     space: &'a CellSpace,
     axis: usize,
     /// a.
@@ -100,7 +100,7 @@ struct Along<'a> {
     noise: Vec<f64>,
 }
 
-impl<'a> Along<'a> {
+impl<'a> Coefficients<'a> {
     fn new(steady: &Steady<'a>, axis: usize) -> Self {
         let (system, space) = (steady.system, steady.space);
         let cells = space.n_cells();

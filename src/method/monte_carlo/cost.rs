@@ -13,11 +13,11 @@ const PASSAGE_STEPS_A_SECOND: f64 = 7e7;
 
 /// What a point costs by Monte Carlo.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MonteCarloCost {
+pub(crate) struct MonteCarloCost {
     /// Bytes at work.
-    pub bytes: f64,
+    pub(crate) bytes: f64,
     /// Integrator steps of all trajectories; `None` where they depend on what is chosen when the sweep runs.
-    pub steps: Option<f64>,
+    pub(crate) steps: Option<f64>,
 }
 
 impl MonteCarloCost {

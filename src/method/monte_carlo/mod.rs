@@ -6,7 +6,7 @@ mod passages;
 mod plan;
 mod source;
 
-pub use cost::MonteCarloCost;
+pub(crate) use cost::MonteCarloCost;
 pub use options::{Estimator, MonteCarloOptions};
 pub(crate) use plan::MonteCarloPlan;
 pub use source::MonteCarloSource;

@@ -11,15 +11,15 @@ use crate::method::StepChoice;
 
 /// What a point costs by SGCM.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SgcmCost {
+pub(crate) struct SgcmCost {
     /// Bytes at work if every cell reaches 2^d others.
-    pub least_bytes: f64,
+    pub(crate) least_bytes: f64,
     /// Bytes at work if every sample ends in a cell of its own.
-    pub most_bytes: f64,
+    pub(crate) most_bytes: f64,
     /// Trajectories, if all cells are reached.
-    pub trajectories: f64,
+    pub(crate) trajectories: f64,
     /// Time steps of a trajectory; `None` where a step is chosen when the sweep runs.
-    pub steps: Option<f64>,
+    pub(crate) steps: Option<f64>,
 }
 
 impl SgcmOptions {

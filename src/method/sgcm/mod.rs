@@ -9,7 +9,7 @@ mod source;
 mod steps;
 mod widening;
 
-pub use cost::SgcmCost;
+pub(crate) use cost::SgcmCost;
 pub use options::{Correction, SgcmOptions};
 pub use slope_correction::{Corrected, solve_corrected};
 pub use source::SgcmSource;

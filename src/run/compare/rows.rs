@@ -91,15 +91,13 @@ fn costs<'a>() -> Vec<Column<'a, At<'a, Solved>>> {
             seconds(one.work.preparation_seconds)
         }),
         digits("work", |(_, one): &Row<'a>| work(one).0),
-        word("work_unit", |(_, one): &Row<'a>| work(one).1.to_owned()),
+        word("work_unit", |(_, one): &Row<'a>| work(one).1),
         count("iterations", |(_, one): &Row<'a>| one.report.iterations),
         digits("bytes", |(_, one): &Row<'a>| {
             let bytes = one.work.bytes;
             bytes.map_or_else(String::new, |bytes| format!("{bytes:.0}"))
         }),
-        word("bytes_from", |(_, one): &Row<'a>| {
-            bytes_from(one).to_owned()
-        }),
+        word("bytes_from", |(_, one): &Row<'a>| bytes_from(one)),
         count("cells", |(_, one): &Row<'a>| one.work.cells),
         digits("samples", |(_, one): &Row<'a>| {
             unless_zero(one.work.samples as u64)
@@ -113,8 +111,8 @@ fn methods<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Solved>> {
     let family = run.family();
     let mut columns = vec![
         parameter(run),
-        word("method", |(_, one): &Row<'a>| one.method.name().to_owned()),
-        word("status", |(_, one): &Row<'a>| one.status.word().to_owned()),
+        word("method", |(_, one): &Row<'a>| one.method.name()),
+        word("status", |(_, one): &Row<'a>| one.status.word()),
     ];
     columns.extend(costs());
     columns.extend([
@@ -151,10 +149,8 @@ fn distances<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Pair>> {
     let family = run.family();
     let mut columns = vec![
         parameter(run),
-        word("first", |(_, one): &Row<'a>| one.first.name().to_owned()),
-        word("second", |(_, one): &Row<'a>| {
-            partner(one.second).to_owned()
-        }),
+        word("first", |(_, one): &Row<'a>| one.first.name()),
+        word("second", |(_, one): &Row<'a>| partner(one.second)),
         word("observable", move |(_, one): &Row<'a>| {
             one.observable.name(family)
         }),
@@ -209,7 +205,7 @@ fn accuracy<'a>(run: &ComparedRun<'a>) -> Columns<'a, (&'a Accuracy, &'a Accurac
             Reference::Exact => "exact".to_owned(),
             Reference::Generator(cells) => format!("generator on {cells} cells"),
         }),
-        word("method", |(_, one): &Row<'a>| one.method.name().to_owned()),
+        word("method", |(_, one): &Row<'a>| one.method.name()),
         count("cells", |(_, one): &Row<'a>| one.cells),
         digits("samples", |(_, one): &Row<'a>| unless_zero(one.samples)),
         digits("seconds", |(_, one): &Row<'a>| seconds(one.seconds)),
@@ -249,9 +245,7 @@ fn densities<'a>(run: &ComparedRun<'a>) -> Columns<'a, AtCell<'a>> {
     let family = run.family();
     Columns(vec![
         number(family.parameter(), |row: &Row<'a>| row.solved.0.value),
-        word("method", |row: &Row<'a>| {
-            row.solved.1.method.name().to_owned()
-        }),
+        word("method", |row: &Row<'a>| row.solved.1.method.name()),
         word("observable", move |row: &Row<'a>| {
             row.estimated.observable.name(family)
         }),

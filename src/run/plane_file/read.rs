@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use super::{BORDER, NO_DENSITY, REASONS};
 use crate::continuation::curve::{
     CodimensionTwoKind, Curve, CurveEnd, CurveOrigin, CurvePoint, CurveWork, DegeneratePoint,
     EndReason, Plane,
@@ -101,23 +102,14 @@ pub(super) fn curve(value: &Value, plane: &Plane) -> Option<Curve> {
 }
 
 fn reason(word: &str, detail: &Value) -> Option<EndReason> {
-    Some(match word {
-        "border" => EndReason::Border(count(detail)?),
-        "no density" => EndReason::NoDensity(detail.as_str()?.to_owned()),
-        "closed" => EndReason::Closed,
-        "cusp" => EndReason::Cusp,
-        "degenerate split" => EndReason::DegenerateSplit,
-        "degenerate kink" => EndReason::DegenerateKink,
-        "corner at a kink" => EndReason::KinkCorner,
-        "feature lost" => EndReason::FeatureLost,
-        "symmetry lost" => EndReason::SymmetryLost,
-        "singular" => EndReason::Singular,
-        "not converged" => EndReason::NotConverged,
-        "sampling" => EndReason::Sampling,
-        "too many points" => EndReason::TooManyPoints,
-        "interrupted" => EndReason::Interrupted,
-        _ => return None,
-    })
+    match word {
+        BORDER => Some(EndReason::Border(count(detail)?)),
+        NO_DENSITY => Some(EndReason::NoDensity(detail.as_str()?.to_owned())),
+        word => {
+            let known = REASONS.iter().find(|(_, known)| *known == word)?;
+            Some(known.0.clone())
+        }
+    }
 }
 
 fn point(value: &Value) -> Option<CurvePoint> {

@@ -121,7 +121,7 @@ impl Shards {
     ///
     /// # Errors
     /// As [`StoredRun::points`] and [`StoredRun::checks`].
-    pub fn gather(
+    pub(crate) fn gather(
         &self,
         subject: &Subject,
         cells: (&CellSpace, &[Axis]),

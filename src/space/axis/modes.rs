@@ -165,13 +165,19 @@ impl Axis {
             }
         };
         let place = |x: &f64| (x - middle) / half;
-        let at = |s: f64| match is_hermite {
-            true => hermite_values(used, s),
-            false => legendre_values(used, s),
+        let at = |s: f64| {
+            if is_hermite {
+                hermite_values(used, s)
+            } else {
+                legendre_values(used, s)
+            }
         };
-        let below = |s: f64| match is_hermite {
-            true => hermite_integrals(used, s),
-            false => legendre_integrals(used, s),
+        let below = |s: f64| {
+            if is_hermite {
+                hermite_integrals(used, s)
+            } else {
+                legendre_integrals(used, s)
+            }
         };
         let nodes: Vec<Vec<f64>> = self.nodes.iter().map(|x| at(place(x))).collect();
         let integrals: Vec<Vec<f64>> = edges.iter().map(|x| below(place(x))).collect();

@@ -13,13 +13,12 @@
 
 use sprs::CsMat;
 
-use super::balance::{add_product, dot};
+use super::balance::{add_product, dot, transposed_product};
 use super::narrowing;
 use super::newton::{FirstPass, norm, refined};
 use super::passes::{Seat, run_alone};
 use super::preconditioner::{LARGE, Preconditioner, Structure, estimate_of};
 use super::solver::{largest, shape};
-use super::transposed::product;
 use super::{RateError, RateMethod, RateOptions};
 use crate::cancellation::Cancellation;
 use crate::space::CellSpace;
@@ -385,7 +384,7 @@ impl<'s> AbsorbingSolver<'s> {
         }
         let operator = |x: &[f64]| {
             let mut out = if is_transposed {
-                product(matrix, x)
+                transposed_product(matrix, x)
             } else {
                 let mut out = vec![0.0; x.len()];
                 add_product(matrix, x, &mut out);

@@ -29,6 +29,18 @@ pub(super) fn add_product(matrix: &CsMat<f64>, x: &[f64], out: &mut [f64]) {
     }
 }
 
+/// Qᵀ x.
+pub(super) fn transposed_product(matrix: &CsMat<f64>, x: &[f64]) -> Vec<f64> {
+    let columns = matrix.outer_iterator();
+    let sum = |indices: &[usize], rates: &[f64]| {
+        let pairs = indices.iter().zip(rates);
+        pairs.map(|(&row, rate)| rate * x[row]).sum::<f64>()
+    };
+    columns
+        .map(|column| sum(column.indices(), column.data()))
+        .collect()
+}
+
 /// Σ a b.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()

@@ -20,7 +20,6 @@
 //! | `krylov`, `newton` | GMRES, and Newton's method by it |
 //! | `question` | a change of the balance, and its answer |
 //! | `response` | how a steady state answers to a change |
-//! | `transposed` | functions of the state: Qᵀ x = b by the same factors |
 //! | `absorbing` | processes that end: occupied times, and what is expected from each cell |
 //! | `solver` | when to iterate, when to factorise |
 //! | `memory` | where the solver stands, to go on from there later |
@@ -47,7 +46,6 @@ mod symbolic;
 mod symmetric;
 #[cfg(test)]
 mod tests;
-mod transposed;
 mod triangular;
 mod updates;
 
@@ -56,7 +54,6 @@ pub(crate) use absorbing::{AbsorbingSolver, Expected};
 pub(crate) use memory::SolverMemory;
 pub use preconditioner::{Estimate, RateMethod, estimate};
 pub use symmetric::{Along, RateSolver};
-pub use transposed::TransposedSolution;
 
 /// Settings of [`RateSolver`].
 #[derive(Debug, Clone, Copy, PartialEq)]

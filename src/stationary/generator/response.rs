@@ -77,7 +77,7 @@ impl DirectSolver {
     }
 
     /// Counts the iterations of an answer beyond those that new factors would take.
-    pub(super) fn count_response(&mut self, used: usize) {
+    fn count_response(&mut self, used: usize) {
         // With a stand-in new factors would save no more than they do in a solve.
         let fresh = match &self.plan {
             Some((_, plan)) if !plan.method.is_exact() => self.baseline.max(FRESH_RESPONSE),

@@ -17,7 +17,6 @@ use super::narrowing;
 use super::preconditioner::{Estimate, Structure, estimate_of};
 use super::question::Question;
 use super::solver::DirectSolver;
-use super::transposed::TransposedSolution;
 use super::{RateError, RateOptions, RateSteadyState};
 use crate::cancellation::Cancellation;
 use crate::space::{Axis, CellSpace};
@@ -306,47 +305,5 @@ impl RateSolver {
             self.plain.solve(matrix, escape, Some(mass))?;
         }
         self.plain.response(&question, mass)
-    }
-
-    /// Qᵀ x = `right` for the generator of the last solve, `mass` its steady state: Σ_i Q_ij x_i = right_j at every
-    /// cell j, by the same factors. Mean times are of this kind: the time until mass escapes has the right side -1.
-    ///
-    /// Where no mass escapes there is a solution only for a right side without a mean under the steady state: its mean
-    /// is taken off, and x is that without one. `guess` is what is expected, `tolerance` the relative error of x in L1.
-    ///
-    /// # Errors
-    /// As [`RateSolver::sensitivity`].
-    pub fn transposed(
-        &mut self,
-        right: &[f64],
-        mass: &[f64],
-        guess: Option<&[f64]>,
-        tolerance: f64,
-    ) -> Result<TransposedSolution, RateError> {
-        let question = Question {
-            change: right,
-            guess,
-            tolerance,
-        };
-        let Some((matrix, escape)) = &self.folded else {
-            return self.plain.transposed(&question, mass);
-        };
-        self.plain.shapes(&question, mass)?;
-        if let Some(half) = self.half.as_mut().filter(|_| is_symmetric(right)) {
-            let folding = &half.folding;
-            let guess = guess.map(|guess| folding.restrict(guess));
-            let question = Question {
-                change: &folding.restrict(right),
-                guess: guess.as_deref(),
-                tolerance,
-            };
-            let mut found = half.solver.transposed(&question, &folding.fold(mass))?;
-            found.values = folding.extend(&found.values);
-            return Ok(found);
-        }
-        if !self.plain.has_solved(matrix) {
-            self.plain.solve(matrix, escape, Some(mass))?;
-        }
-        self.plain.transposed(&question, mass)
     }
 }

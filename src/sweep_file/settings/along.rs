@@ -22,12 +22,12 @@ pub(super) fn filter(family: &Family, axis: usize) -> Option<(f64, f64)> {
 }
 
 /// What is swept, with the systems at both ends of the sweep, or at the corners of the map's box.
-pub(super) struct Along<'a> {
+pub(super) struct SweptSystems<'a> {
     pub(super) family: &'a Family,
     pub(super) corners: Vec<Arc<dyn System>>,
 }
 
-impl<'a> Along<'a> {
+impl<'a> SweptSystems<'a> {
     /// Of a family, with the corners that a file says.
     pub(super) fn new(family: &'a Family, draft: &Draft) -> Self {
         Self {

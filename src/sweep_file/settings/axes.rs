@@ -1,7 +1,7 @@
 //! The cells of each axis: range, count, grading. What is given is checked here; what is left to the program is found
 //! later.
 
-use super::along::Along;
+use super::along::SweptSystems;
 use super::axis::{AxisSettings, Grade};
 use super::axis_checks::{
     check_modes, refuse_cells, refuse_turns, warn_of_few_cells, warn_of_idle_grade,
@@ -40,7 +40,7 @@ pub(super) fn read(
             reader.report(diagnostic);
         }
     }
-    let along = family.map(|family| Along::new(family, draft));
+    let along = family.map(|family| SweptSystems::new(family, draft));
     if let Some(along) = &along {
         refuse_turns(reader, draft, model, along)?;
     }
@@ -68,7 +68,7 @@ fn read_axis(
     reader: &mut Reader<'_>,
     draft: &Draft,
     (name, described): (&str, &AxisDescription),
-    along: Option<&Along<'_>>,
+    along: Option<&SweptSystems<'_>>,
     index: usize,
 ) -> Option<AxisSettings> {
     let method = draft.method.kind;

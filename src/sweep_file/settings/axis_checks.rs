@@ -1,7 +1,7 @@
 //! What is said of the settings of an axis that a method cannot use, or that are of no use to it.
 
 use super::AxisSettings;
-use super::along::{Along, filter};
+use super::along::{SweptSystems, filter};
 use crate::sweep_file::diagnostic::Diagnostic;
 use crate::sweep_file::draft::{Draft, MethodKind};
 use crate::sweep_file::reader::Reader;
@@ -57,7 +57,7 @@ pub(super) fn refuse_turns(
     reader: &mut Reader<'_>,
     draft: &Draft,
     model: &Model,
-    along: &Along<'_>,
+    along: &SweptSystems<'_>,
 ) -> Option<()> {
     let method = draft.method.kind;
     let turn = (0..model.axes.len()).find(|&axis| along.turn(axis).is_some());
@@ -98,11 +98,11 @@ pub(super) fn refuse_cells(reader: &mut Reader<'_>, name: &str) -> Option<()> {
 pub(super) fn check_modes(
     reader: &mut Reader<'_>,
     name: &str,
-    along: &Along<'_>,
+    along: &SweptSystems<'_>,
     index: usize,
     range: Option<(f64, f64)>,
 ) -> Option<()> {
-    let Along {
+    let SweptSystems {
         family,
         corners: systems,
     } = along;

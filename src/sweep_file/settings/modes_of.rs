@@ -1,6 +1,6 @@
 //! What modes of an axis are made of, and when they serve without being asked for.
 
-use super::along::{Along, filter};
+use super::along::{SweptSystems, filter};
 use crate::space::{Axis, SpaceError};
 use crate::sweep_file::draft::Draft;
 use crate::system::AxisDescription;
@@ -25,7 +25,7 @@ pub enum ModesOf {
 
 impl ModesOf {
     /// Of an axis all along a sweep.
-    pub(super) fn new(along: Option<&Along<'_>>, axis: usize) -> Self {
+    pub(super) fn new(along: Option<&SweptSystems<'_>>, axis: usize) -> Self {
         let Some(along) = along else {
             return Self::Bounded;
         };
@@ -53,7 +53,7 @@ impl ModesOf {
         self,
         draft: &Draft,
         described: &AxisDescription,
-        along: Option<&Along<'_>>,
+        along: Option<&SweptSystems<'_>>,
     ) -> bool {
         let is_typed = along.is_some_and(|along| along.family.model().typed().is_some());
         let fit = !is_typed || self != Self::Bounded;

@@ -8,7 +8,7 @@ use crate::formula::language::FormulaError;
 use crate::formula::limits;
 use crate::formula::scope::SymbolError;
 use crate::system::ColouredNoiseError;
-use crate::system::typed::PHASE_AXIS;
+use crate::system::PHASE_AXIS;
 
 /// Where a formula of a model stands.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -306,9 +306,6 @@ impl TypedModel {
     }
 }
 
-/// Name of the axis of a forcing's phase: that of time in formulas.
-pub(crate) const PHASE_AXIS: &str = "t";
-
 /// Axes from this one on are internal states; those before it are the oscillator's, which are looked at.
 const FIRST_INTERNAL_AXIS: usize = 2;
 

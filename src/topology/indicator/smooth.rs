@@ -63,7 +63,7 @@ fn term(powers: Powers, offset: &[f64], kinked: bool) -> f64 {
 
 /// What is fitted: terms of the first fit and of that of a higher degree, and the second derivatives that are wanted,
 /// by the powers of their terms.
-struct Model {
+struct PolynomialTerms {
     terms: [Vec<Powers>; 2],
     wanted: Vec<Powers>,
     kinked: bool,
@@ -81,7 +81,7 @@ pub(super) struct Smooth {
 impl Smooth {
     /// For a marginal about its centre.
     pub(super) fn marginal(estimated: &EstimatedDensity, at: f64) -> Option<Self> {
-        let model = Model {
+        let model = PolynomialTerms {
             terms: [marginal_terms(DEGREE[0]), marginal_terms(DEGREE[1])],
             wanted: vec![[2, 0]],
             kinked: false,
@@ -91,7 +91,7 @@ impl Smooth {
 
     /// For a joint density about its centre.
     pub(super) fn joint(estimated: &EstimatedDensity, centre: &[f64]) -> Option<Self> {
-        let model = Model {
+        let model = PolynomialTerms {
             terms: [joint_terms(DEGREE[0]), joint_terms(DEGREE[1])],
             wanted: vec![[2, 0], [1, 1], [0, 2]],
             kinked: false,
@@ -105,7 +105,7 @@ impl Smooth {
         centre: &[f64],
         across: usize,
     ) -> Option<Self> {
-        let model = Model {
+        let model = PolynomialTerms {
             terms: [
                 kinked_terms(DEGREE_AT_KINK[0]),
                 kinked_terms(DEGREE_AT_KINK[1]),
@@ -131,7 +131,7 @@ fn widest_that_fits(
     estimated: &EstimatedDensity,
     centre: &[f64],
     order: &[usize],
-    model: &Model,
+    model: &PolynomialTerms,
 ) -> Option<Smooth> {
     let mut found = None;
     for share in SHARES {
@@ -197,7 +197,7 @@ impl Window {
     }
 
     /// Weights for the second derivatives that a model wants, and the misfit of its first terms.
-    fn fit(self, estimated: &EstimatedDensity, model: &Model) -> Option<(Smooth, f64)> {
+    fn fit(self, estimated: &EstimatedDensity, model: &PolynomialTerms) -> Option<(Smooth, f64)> {
         // log p of a histogram has the variance 1/(n p V): cells with little mass count less, nearly empty ones
         // nothing.
         let largest = estimated.density.maximum();
@@ -216,7 +216,7 @@ impl Window {
         Some((smooth, misfit))
     }
 
-    fn solve(&self, terms: &[Powers], precision: &[f64], model: &Model) -> Option<Fit> {
+    fn solve(&self, terms: &[Powers], precision: &[f64], model: &PolynomialTerms) -> Option<Fit> {
         let design = DMatrix::from_fn(self.cells.len(), terms.len(), |row, column| {
             term(terms[column], &self.offsets[row], model.kinked)
         });

@@ -278,6 +278,5 @@ fn what_is_located_where_nothing_is_a_polynomial_holds_the_truth() {
 #[ignore = "prints the table of docs/location.md"]
 fn formulas_in_full() {
     let scores = run(cases(formula, 3000..3100));
-    print(&scores);
-    assert!(scores.iter().all(|(_, score)| score.false_located == 0));
+    print_true(&scores);
 }

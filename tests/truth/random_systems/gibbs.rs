@@ -60,17 +60,11 @@ pub(super) fn slope(dice: &mut Dice, kind: u64) -> Slope {
     }
 }
 
-fn gibbs(seed: u64) -> Option<Case> {
-    let mut dice = Dice::new(seed);
+/// The case of V whose marginal along x is exp(-(V - θx)/T), with 81 cells on the range that this needs.
+pub(super) fn of_potential(family: &'static str, of: Slope, t: f64) -> (Case, String) {
     let Slope {
-        family,
-        text,
-        value,
-        ends,
-    } = slope(&mut dice, seed % 5);
-    let sigma2 = dice.between(0.15, 0.9);
-    let (a, c) = (dice.between(-0.8, 0.8), dice.between(-1.0, 1.0));
-    let k = dice.between(0.5, 2.0);
+        text, value, ends, ..
+    } = of;
     let value = std::rc::Rc::new(value);
     let zero = value.clone();
     let formula = Formula {
@@ -78,29 +72,55 @@ fn gibbs(seed: u64) -> Option<Case> {
         drift: "theta".to_owned(),
         noise: "1".to_owned(),
         slope: Box::new(move |x, theta| theta - value(x)),
-        intensity: Box::new(move |_| sigma2),
+        intensity: Box::new(move |_| 2.0 * t),
         zero: Box::new(move |x| zero(x)),
         speed: 0.0,
         breaks: Vec::new(),
         ends,
         within: (-6.0, 6.0),
     };
-    let mut case = formula.case(81);
+    (formula.case(81), text)
+}
+
+/// Axes of 30 to `most` cells over two ranges that are widened, or narrowed, by a share.
+pub(super) fn axes(dice: &mut Dice, ranges: [(f64, f64); 2], most: usize) -> Option<Vec<Axis>> {
+    let wider = [0.0, 0.3, 0.6, -0.08][dice.one_of([0, 0, 1, 2, 3])];
+    let axis = |(from, to): (f64, f64)| {
+        let more = 0.5 * wider * (to - from);
+        let rounded = |x: f64| (x * 100.0).round() / 100.0;
+        let cells = dice.one_of([30, 45, 60, 80, most]);
+        Axis::uniform(rounded(from - more), rounded(to + more), cells).ok()
+    };
+    ranges.map(axis).into_iter().collect()
+}
+
+/// The equations of a case, what else is said of it, its cells and its range.
+pub(super) fn in_words(case: &Case, equations: &[String; 2], further: &str) -> String {
+    let axes = case.axes.iter();
+    let axes: Vec<String> = axes
+        .map(|axis| format!("{} cells in [{}, {}]", axis.count(), axis.from(), axis.to()))
+        .collect();
+    let [x, y] = equations;
+    format!(
+        "x' = {x}, y' = {y}{further}, {}, θ in {:?}",
+        axes.join(", "),
+        case.ends
+    )
+}
+
+fn gibbs(seed: u64) -> Option<Case> {
+    let mut dice = Dice::new(seed);
+    let of = slope(&mut dice, seed % 5);
+    let sigma2 = dice.between(0.15, 0.9);
+    let (a, c) = (dice.between(-0.8, 0.8), dice.between(-1.0, 1.0));
+    let k = dice.between(0.5, 2.0);
+    let (mut case, text) = of_potential(of.family, of, 0.5 * sigma2);
     // 32 below the maximum is what the range of the marginal holds.
     let d = (32.0 * sigma2 / k).sqrt();
     let (from, to) = (case.axes[0].from(), case.axes[0].to());
     let reach = [a * from, a * to];
     let (low, high) = (reach[0].min(reach[1]) - d, reach[0].max(reach[1]) + d);
-    let wider = [0.0, 0.3, 0.6, -0.08][dice.one_of([0, 0, 1, 2, 3])];
-    let range = |from: f64, to: f64| {
-        let more = 0.5 * wider * (to - from);
-        ((from - more) * 100.0).round() / 100.0..((to + more) * 100.0).round() / 100.0
-    };
-    let mut axes = Vec::new();
-    for range in [range(from, to), range(low, high)] {
-        let cells = dice.one_of([30, 45, 60, 80, 100]);
-        axes.push(Axis::uniform(range.start, range.end, cells).ok()?);
-    }
+    case.axes = axes(&mut dice, [(from, to), (low, high)], 100)?;
     let along_x = format!("({text} - theta - {k} ({a}) (y - ({a}) x))");
     let along_y = format!("({k} (y - ({a}) x))");
     let drift = [
@@ -115,17 +135,7 @@ fn gibbs(seed: u64) -> Option<Case> {
         .with_parameters(["theta"])
         .build()
         .unwrap();
-    let told: Vec<String> = axes
-        .iter()
-        .map(|axis| format!("{} cells in [{}, {}]", axis.count(), axis.from(), axis.to()))
-        .collect();
-    case.words = format!(
-        "x' = {}, y' = {}, noise sqrt({sigma2}) on both, {}, θ in {ends:?}",
-        drift[0],
-        drift[1],
-        told.join(", ")
-    );
-    case.axes = axes;
+    case.words = in_words(&case, &drift, &format!(", noise sqrt({sigma2}) on both"));
     case.points = 17;
     Some(case)
 }
@@ -133,18 +143,12 @@ fn gibbs(seed: u64) -> Option<Case> {
 #[test]
 fn what_is_located_under_noise_on_both_axes_holds_the_truth() {
     let scores = run(cases(gibbs, 8000..8005));
-    print(&scores);
-    for (name, score) in &scores {
-        assert_eq!(score.false_located, 0, "{name}");
-    }
+    print_true(&scores);
 }
 
 #[test]
 #[ignore = "prints the table of docs/location.md"]
 fn gibbs_in_full() {
     let scores = run(cases(gibbs, 8000..8060));
-    print(&scores);
-    // Stated errors hold in nineteen of twenty cases.
-    let sum = |of: fn(&Score) -> usize| scores.iter().map(|(_, score)| of(score)).sum::<usize>();
-    assert!(20 * sum(|score| score.false_located) <= sum(|score| score.located));
+    print_nearly_true(&scores);
 }

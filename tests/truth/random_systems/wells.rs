@@ -335,26 +335,19 @@ fn of_two_axes(seed: u64) -> Option<Case> {
 #[test]
 fn what_is_located_in_systems_that_bend_and_jump_holds_the_truth() {
     let scores = run(cases(of_one_axis, 4000..4014));
-    print(&scores);
-    for (name, score) in &scores {
-        assert_eq!(score.false_located, 0, "{name}");
-    }
+    print_true(&scores);
 }
 
 #[test]
 #[ignore = "prints the table of docs/location.md"]
 fn planes_in_full() {
     let scores = run(cases(of_two_axes, 5000..5045));
-    print(&scores);
-    // Stated errors hold in nineteen of twenty cases.
-    let sum = |of: fn(&Score) -> usize| scores.iter().map(|(_, score)| of(score)).sum::<usize>();
-    assert!(20 * sum(|score| score.false_located) <= sum(|score| score.located));
+    print_nearly_true(&scores);
 }
 
 #[test]
 #[ignore = "prints the table of docs/location.md"]
 fn wells_in_full() {
     let scores = run(cases(of_one_axis, 4000..4140));
-    print(&scores);
-    assert!(scores.iter().all(|(_, score)| score.false_located == 0));
+    print_true(&scores);
 }

@@ -4,10 +4,10 @@ use sprs::CsMat;
 
 use crate::generator::{Generator, GeneratorOptions, assemble};
 use crate::space::{Axis, CellSpace};
-use crate::stationary::generator::tests::distance;
-use crate::stationary::generator::{
-    RateMethod, RateOptions, RateSolver, RateSteadyState, estimate,
+use crate::stationary::generator::tests::{
+    assert_adjoint, assert_same_bits, difference_of_answers, distance, solve,
 };
+use crate::stationary::generator::{RateMethod, estimate};
 use crate::system::TypedModel;
 
 /// An oscillator y' = -g y + force + F cos(w t) with noise: force, ends of x and y, g, temperature, F, w.
@@ -41,23 +41,6 @@ fn generator(space: &CellSpace, (force, _, [g, t, f, w]): Case) -> Generator {
     assemble(&*system, space, &GeneratorOptions::default()).unwrap()
 }
 
-fn solver(space: &CellSpace, method: RateMethod) -> RateSolver {
-    let options = RateOptions {
-        method: Some(method),
-        tolerance: 1e-10,
-        ..RateOptions::default()
-    };
-    RateSolver::new(space.clone(), options)
-}
-
-fn solve(space: &CellSpace, generator: &Generator, method: RateMethod) -> RateSteadyState {
-    let steady = solver(space, method).solve(&generator.matrix, &generator.escape, None);
-    let steady = steady.unwrap();
-    assert!(steady.info.converged, "{:?}", steady.info);
-    assert_eq!(steady.info.method, method);
-    steady
-}
-
 #[test]
 fn all_harmonics_together_and_each_by_itself_have_the_same_steady_state() {
     // The stronger the forcing is against the spread, the more iterations.
@@ -87,51 +70,23 @@ fn without_a_forcing_the_average_is_the_whole_generator() {
 }
 
 #[test]
-fn answers_to_changes_and_the_transposed_solve_are_the_same() {
+fn answers_to_changes_are_the_same_and_the_transposed_factors_their_adjoint() {
     let space = space(STRONG, 16, 4);
     let ours = generator(&space, STRONG);
     let (force, reach, [g, t, f, w]) = STRONG;
     let other = generator(&space, (force, reach, [g, t, 1.0001 * f, w]));
     let change: CsMat<f64> = (&other.matrix - &ours.matrix).map(|rate| 1e4 * rate);
-    let function: Vec<f64> = (0..space.n_cells())
-        .map(|cell| {
-            let centre = space.centre(cell);
-            centre[0] * centre[1] + centre[2].powi(2)
-        })
-        .collect();
-    let found = [RateMethod::Lu, RateMethod::Modewise].map(|method| {
-        let mut solver = solver(&space, method);
-        let steady = solver.solve(&ours.matrix, &ours.escape, None).unwrap();
-        let answer = solver.sensitivity(&change, &steady.mass).unwrap();
-        let adjoint = solver.transposed(&function, &steady.mass, None, 1e-9);
-        let adjoint = adjoint.unwrap();
-        assert!(adjoint.residual < 1e-8, "{method:?} {:e}", adjoint.residual);
-        assert!(
-            adjoint.iterations <= 60,
-            "{method:?} {}",
-            adjoint.iterations
-        );
-        [answer, adjoint.values]
-    });
-    for (whole, each) in found[0].iter().zip(&found[1]) {
-        let size: f64 = whole.iter().map(|value| value.abs()).sum();
-        let error = distance(whole, each) / size;
-        assert!(error < 1e-6, "{error:e}");
+    let error = difference_of_answers(&space, &ours, &change);
+    assert!(error < 1e-6, "{error:e}");
+    for method in [RateMethod::Lu, RateMethod::LuSingle, RateMethod::Modewise] {
+        assert_adjoint(&space, &ours, method);
     }
 }
 
 #[test]
 fn one_thread_and_two_give_the_same_bits() {
     let space = space(STRONG, 24, 4);
-    let generator = generator(&space, STRONG);
-    let [one, two] = [1, 2].map(|threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        let pool = pool.build().unwrap();
-        let steady = pool.install(|| solve(&space, &generator, RateMethod::Modewise));
-        let bits = steady.mass.iter().map(|mass| mass.to_bits());
-        bits.collect::<Vec<u64>>()
-    });
-    assert_eq!(one, two);
+    assert_same_bits(&space, &generator(&space, STRONG));
 }
 
 #[test]

@@ -6,10 +6,10 @@ use super::layout::Layout;
 use crate::generator::{Generator, GeneratorOptions, assemble};
 use crate::space::{Axis, CellSpace};
 use crate::stationary::generator::dissection::Grid;
-use crate::stationary::generator::tests::distance;
-use crate::stationary::generator::{
-    RateMethod, RateOptions, RateSolver, RateSteadyState, estimate,
+use crate::stationary::generator::tests::{
+    assert_adjoint, assert_same_bits, difference_of_answers, distance, solve, solver,
 };
+use crate::stationary::generator::{RateMethod, estimate};
 use crate::system::registry;
 
 /// Cells along x and y, and modes of z.
@@ -31,23 +31,6 @@ fn dahl(space: &CellSpace, level: f64, alpha: f64) -> Generator {
     ];
     let system = registry::find("dahl").unwrap().system_with(&values);
     assemble(&*system.unwrap(), space, &GeneratorOptions::default()).unwrap()
-}
-
-fn solver(space: &CellSpace, method: RateMethod) -> RateSolver {
-    let options = RateOptions {
-        method: Some(method),
-        tolerance: 1e-11,
-        ..RateOptions::default()
-    };
-    RateSolver::new(space.clone(), options)
-}
-
-fn solve(space: &CellSpace, generator: &Generator, method: RateMethod) -> RateSteadyState {
-    let steady = solver(space, method).solve(&generator.matrix, &generator.escape, None);
-    let steady = steady.unwrap();
-    assert!(steady.info.converged, "{:?}", steady.info);
-    assert_eq!(steady.info.method, method);
-    steady
 }
 
 #[test]
@@ -121,7 +104,7 @@ fn half_of_the_cells_are_solved_mode_by_mode_too() {
     let other = if places == 0 { 1 } else { 0 };
     tilted.data_mut()[start + places] -= 1e-3;
     tilted.data_mut()[start + other] += 1e-3;
-    let mut solver = solver(&space, RateMethod::Modewise);
+    let mut solver = solver(&space, RateMethod::Modewise, 1e-11);
     let steady = solver.solve(&tilted, &generator.escape, None).unwrap();
     let factors = [&each, &steady].map(|steady| steady.info.factor_bytes);
     assert!(
@@ -132,34 +115,22 @@ fn half_of_the_cells_are_solved_mode_by_mode_too() {
 }
 
 #[test]
-fn answers_to_changes_are_the_same() {
+fn answers_to_changes_are_the_same_and_the_transposed_factors_their_adjoint() {
     let space = space([14, 12], 10);
     let generator = dahl(&space, 0.1, 0.5);
     let other = dahl(&space, 0.1, 0.5001);
     let change: CsMat<f64> = (&other.matrix - &generator.matrix).map(|rate| 1e4 * rate);
-    let answers = [RateMethod::Lu, RateMethod::Modewise].map(|method| {
-        let mut solver = solver(&space, method);
-        let (matrix, escape) = (&generator.matrix, &generator.escape);
-        let steady = solver.solve(matrix, escape, None).unwrap();
-        solver.sensitivity(&change, &steady.mass).unwrap()
-    });
-    let size: f64 = answers[0].iter().map(|value| value.abs()).sum();
-    let error = distance(&answers[0], &answers[1]);
-    assert!(error < 1e-8 * size, "{error:e} of {size:e}");
+    let error = difference_of_answers(&space, &generator, &change);
+    assert!(error < 1e-8, "{error:e}");
+    for method in [RateMethod::Lu, RateMethod::LuSingle, RateMethod::Modewise] {
+        assert_adjoint(&space, &generator, method);
+    }
 }
 
 #[test]
 fn one_thread_and_two_give_the_same_bits() {
     let space = space([24, 20], 12);
-    let generator = dahl(&space, 0.1, 0.5);
-    let [one, two] = [1, 2].map(|threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        let pool = pool.build().unwrap();
-        let steady = pool.install(|| solve(&space, &generator, RateMethod::Modewise));
-        let bits = steady.mass.iter().map(|mass| mass.to_bits());
-        bits.collect::<Vec<u64>>()
-    });
-    assert_eq!(one, two);
+    assert_same_bits(&space, &dahl(&space, 0.1, 0.5));
 }
 
 #[test]
@@ -173,37 +144,4 @@ fn many_modes_are_taken_one_by_one_and_few_together() {
     };
     assert_eq!(method(96), RateMethod::Modewise);
     assert_eq!(method(2), RateMethod::LuSingle);
-}
-
-#[test]
-fn the_transposed_solve_is_the_adjoint_of_the_answer_mode_by_mode_too() {
-    let space = space([14, 12], 8);
-    let generator = dahl(&space, 0.1, 0.5);
-    let mut found = Vec::new();
-    for method in [RateMethod::Modewise, RateMethod::Lu] {
-        let mut solver = solver(&space, method);
-        let steady = solver.solve(&generator.matrix, &generator.escape, None);
-        let steady = steady.unwrap();
-        let function: Vec<f64> = (0..space.n_cells())
-            .map(|cell| space.centre(cell).iter().product::<f64>() + space.centre(cell)[1].powi(2))
-            .collect();
-        let solved = solver
-            .transposed(&function, &steady.mass, None, 1e-9)
-            .unwrap();
-        assert!(solved.residual < 1e-8, "{method:?} {:e}", solved.residual);
-        let iterations = if method == RateMethod::Lu {
-            1..=4
-        } else {
-            5..=60
-        };
-        assert!(
-            iterations.contains(&solved.iterations),
-            "{method:?} {}",
-            solved.iterations
-        );
-        found.push(solved.values);
-    }
-    let size: f64 = found[1].iter().map(|value| value.abs()).sum();
-    let apart = distance(&found[0], &found[1]) / size;
-    assert!(apart < 1e-6, "{apart:e}");
 }

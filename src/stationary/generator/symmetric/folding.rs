@@ -91,22 +91,6 @@ impl Folding {
         self.place.iter().map(share).collect()
     }
 
-    /// The values of a symmetric function on half of the cells.
-    pub(super) fn restrict(&self, values: &[f64]) -> Vec<f64> {
-        self.upper
-            .iter()
-            .map(|&cell| values[cell as usize])
-            .collect()
-    }
-
-    /// The function with these values on half of the cells.
-    pub(super) fn extend(&self, values: &[f64]) -> Vec<f64> {
-        self.place
-            .iter()
-            .map(|&index| values[index as usize])
-            .collect()
-    }
-
     /// The generator of the sums, and their escape.
     pub(super) fn generator(&self, matrix: &CsMat<f64>, escape: &[f64]) -> (CsMat<f64>, Vec<f64>) {
         let cells = self.upper.len();
