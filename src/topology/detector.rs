@@ -145,7 +145,6 @@ impl Detector for PersistenceDetector {
         }
         match density.density.axes.len() {
             1 => shoulders(density),
-            _ if std::env::var("NOCREST").is_ok() => flanks_from_centre(density),
             _ => [flanks_from_centre(density), flanks_of_crests(density)].concat(),
         }
     }
