@@ -183,6 +183,9 @@ impl EstimatedDensity {
     /// Errors as they are stated, of each value: those by which neighbours are told apart, and what the ends of the
     /// ranges may have changed.
     pub fn stated_errors(&self) -> Vec<f64> {
+        if self.truncation == Truncation::default() {
+            return self.standard_error.clone();
+        }
         let errors = self.standard_error.iter().enumerate();
         errors
             .map(|(cell, error)| error + self.truncated(cell))

@@ -160,10 +160,11 @@ impl Observed {
             values: in_cells(&self.density)?,
         };
         let variants = self.variants(path, index)?;
+        let truncation = self.truncation(path, index)?;
         // What is stored has what the ends may have changed.
         let standard_error = match variants.second_scheme() {
-            Some(second) => errors_by_schemes(&density, second),
-            None => in_cells(&self.error)?,
+            Some(second) if truncation.share > 0.0 => errors_by_schemes(&density, second),
+            _ => in_cells(&self.error)?,
         };
         Ok(EstimatedDensity {
             observable: self.observable,
@@ -176,7 +177,7 @@ impl Observed {
                 ..Structure::default()
             },
             negligible: self.negligible,
-            truncation: self.truncation(path, index)?,
+            truncation,
         })
     }
 
