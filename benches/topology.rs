@@ -33,6 +33,7 @@ fn noisy_ring(count: usize, dimension: u32) -> EstimatedDensity {
         variants: pbif::density::Variants::None,
         structure: pbif::density::Structure::default(),
         negligible: pbif::density::NEGLIGIBLE,
+        truncation: Default::default(),
         density: Density {
             axes: vec![axis; dimension as usize],
             values,

@@ -47,7 +47,8 @@ pub(crate) fn agreement(computed: &EstimatedDensity, sampled: &EstimatedDensity)
     };
     let occupied = OCCUPIED * computed.density.maximum();
     let values = computed.density.values.iter().zip(&sampled.density.values);
-    let errors = computed.standard_error.iter().zip(&sampled.standard_error);
+    let grid = computed.stated_errors();
+    let errors = grid.iter().zip(&sampled.standard_error);
     for ((a, b), (grid, error)) in values.zip(errors) {
         let gap = (a - b).abs();
         let within = gap <= ERRORS * error;
@@ -92,6 +93,7 @@ mod tests {
             variants: Variants::None,
             structure: Structure::default(),
             negligible: crate::density::NEGLIGIBLE,
+            truncation: Default::default(),
         }
     }
 

@@ -5,6 +5,7 @@
 //! three neighbouring values shows where to look.
 
 use super::Point;
+use crate::density::EstimatedDensity;
 use crate::topology::Flank;
 
 /// Flanks at neighbouring points farther apart than this, in ranges, are not one that moved.
@@ -48,11 +49,10 @@ pub(super) fn on_flanks(points: &[(&Point, &Flanks)], tolerance: f64) -> Option<
     triples.into_iter().find_map(|triple| {
         let x = [0, 1, 2].map(|index| triple[index].0.value);
         (0..observables).find_map(|observable| {
-            let axis = triple[1].0.densities[observable].density.axes.first()?;
-            let reach = ONE_FLANK * (axis.to() - axis.from());
+            let reach = reach(&triple[1].0.densities[observable]);
             let mut middle = triple[1].1[observable].iter();
             middle.find_map(|flank| {
-                let near = |index: usize| nearest(&triple[index].1[observable], flank, reach);
+                let near = |index: usize| nearest(&triple[index].1[observable], flank, &reach);
                 let (before, after) = (near(0)?, near(2)?);
                 let vertex = lowest(x, [before.value, flank.value, after.value])?;
                 let apart = x.iter().all(|x| (x - vertex).abs() > tolerance);
@@ -75,15 +75,13 @@ pub(super) fn between_flanks(points: &[(&Point, &Flanks)], tolerance: f64) -> Op
         }
         (0..observables).find_map(|observable| {
             let same = a.detections[observable].signature == b.detections[observable].signature;
-            let axis = a.densities[observable]
-                .density
-                .axes
-                .first()
-                .filter(|_| same)?;
-            let reach = ONE_FLANK * (axis.to() - axis.from());
+            if !same {
+                return None;
+            }
+            let reach = reach(&a.densities[observable]);
             let (below, above) = (&pair[0].1[observable], &pair[1].1[observable]);
             let zero = |flank: &Flank, rises: bool| {
-                let zero = zero_of(flank, below, above, reach)?;
+                let zero = zero_of(flank, below, above, &reach)?;
                 ((flank.value <= 0.0) == rises).then_some(zero)
             };
             let born = below.iter().filter_map(|flank| zero(flank, true));
@@ -115,12 +113,11 @@ pub(super) fn beside_centre(points: &[(&Point, &Flanks)], tolerance: f64) -> Opt
                     exact && one.kind == other.kind && is_turn
                 });
                 let centre = turn.map(|(one, other)| one.value / (one.value - other.value))?;
-                let axis = a.densities[observable].density.axes.first()?;
-                let reach = ONE_FLANK * (axis.to() - axis.from());
+                let reach = reach(&a.densities[observable]);
                 let (below, above) = (&pair[0].1[observable], &pair[1].1[observable]);
                 let zeros = below
                     .iter()
-                    .filter_map(|flank| zero_of(flank, below, above, reach));
+                    .filter_map(|flank| zero_of(flank, below, above, &reach));
                 let apart = |share: &f64| (share - centre).abs();
                 let zero = zeros.min_by(|x, y| apart(x).total_cmp(&apart(y)))?;
                 let share = (0.5 * (centre + zero)).clamp(NEAREST, 1.0 - NEAREST);
@@ -130,7 +127,7 @@ pub(super) fn beside_centre(points: &[(&Point, &Flanks)], tolerance: f64) -> Opt
 }
 
 /// Where between two neighbours, as a share of their distance, a flank of the first changes its sign.
-fn zero_of(flank: &Flank, below: &[Flank], above: &[Flank], reach: f64) -> Option<f64> {
+fn zero_of(flank: &Flank, below: &[Flank], above: &[Flank], reach: &[f64]) -> Option<f64> {
     let other = nearest(above, flank, reach)?;
     let is_mutual = nearest(below, other, reach) == Some(flank);
     let is_turn = (flank.value <= 0.0) != (other.value <= 0.0);
@@ -138,11 +135,20 @@ fn zero_of(flank: &Flank, below: &[Flank], above: &[Flank], reach: f64) -> Optio
     (is_mutual && is_turn && share.is_finite()).then_some(share)
 }
 
+/// How far a flank may move along each axis from one point to the next.
+fn reach(density: &EstimatedDensity) -> Vec<f64> {
+    let axes = density.density.axes.iter();
+    axes.map(|axis| ONE_FLANK * (axis.to() - axis.from()))
+        .collect()
+}
+
 /// The flank of a neighbouring point that is the same, moved.
-fn nearest<'a>(flanks: &'a [Flank], sought: &Flank, reach: f64) -> Option<&'a Flank> {
+fn nearest<'a>(flanks: &'a [Flank], sought: &Flank, reach: &[f64]) -> Option<&'a Flank> {
     let distance = |one: &&Flank| (one.place - sought.place).abs();
-    let alike = flanks.iter().filter(|one| one.rising == sought.rising);
-    let near = alike.filter(|one| distance(one) <= reach);
+    let reach = reach.get(sought.line.saturating_sub(1))?;
+    let is_alike = |one: &&Flank| one.rising == sought.rising && one.line == sought.line;
+    let near = flanks.iter().filter(is_alike);
+    let near = near.filter(|one| distance(one) <= *reach);
     near.min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 

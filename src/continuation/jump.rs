@@ -107,6 +107,7 @@ mod tests {
             variants: Variants::None,
             structure: Structure::default(),
             negligible,
+            truncation: Default::default(),
         };
         Point {
             value,

@@ -212,6 +212,7 @@ impl From<Cancelled> for SourceError {
 ///         variants: Variants::None,
 ///         structure: Structure { centre: Some(vec![0.0]), ..Structure::default() },
 ///         negligible: 0.0,
+///         truncation: Default::default(),
 ///     }
 /// }
 ///

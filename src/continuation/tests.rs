@@ -53,6 +53,7 @@ impl Ramp {
             variants: crate::density::Variants::None,
             structure: crate::density::Structure::default(),
             negligible: crate::density::NEGLIGIBLE,
+            truncation: Default::default(),
         }];
         solution
     }

@@ -24,7 +24,7 @@ pub(crate) fn estimate_from_difference(
     let difference = projection.density(difference)?;
     let both = density.values.iter().zip(&difference.values);
     let second = both.map(|(value, change)| value + change).collect();
-    Ok(of_both(observable, density, second, &difference.values))
+    Ok(estimate_from_second(observable, density, second))
 }
 
 /// As [`estimate_from_difference`] from the densities by both discretisations (of the second its values alone).
@@ -33,32 +33,27 @@ pub(crate) fn estimate_from_second(
     density: Density,
     second: Vec<f64>,
 ) -> EstimatedDensity {
-    let both = second.iter().zip(&density.values);
-    let difference: Vec<f64> = both.map(|(second, value)| second - value).collect();
-    of_both(observable, density, second, &difference)
-}
-
-fn of_both(
-    observable: Observable,
-    density: Density,
-    second: Vec<f64>,
-    difference: &[f64],
-) -> EstimatedDensity {
-    let mut squares: Vec<f64> = difference.iter().map(|value| value * value).collect();
-    let counts: Vec<usize> = density.axes.iter().map(|axis| axis.count()).collect();
-    let mut stride = squares.len();
-    for &count in &counts {
-        stride /= count;
-        squares = neighbour_means(&squares, count, stride);
-    }
     EstimatedDensity {
         observable,
+        standard_error: errors_by_schemes(&density, &second),
         density,
-        standard_error: squares.into_iter().map(f64::sqrt).collect(),
         variants: Variants::Scheme(second),
         structure: Structure::default(),
         negligible: crate::density::NEGLIGIBLE,
+        truncation: Default::default(),
     }
+}
+
+/// What two discretisations differ by, as an error of each value.
+pub(crate) fn errors_by_schemes(density: &Density, second: &[f64]) -> Vec<f64> {
+    let both = second.iter().zip(&density.values);
+    let mut squares: Vec<f64> = both.map(|(a, b)| (a - b) * (a - b)).collect();
+    let mut stride = squares.len();
+    for axis in &density.axes {
+        stride /= axis.count();
+        squares = neighbour_means(&squares, axis.count(), stride);
+    }
+    squares.into_iter().map(f64::sqrt).collect()
 }
 
 impl EstimatedDensity {

@@ -28,7 +28,9 @@ mod sub_cells;
 mod uncertainty;
 
 pub(crate) use discretisation::WIGGLE;
-pub(crate) use discretisation::{estimate_from_difference, estimate_from_second};
+pub(crate) use discretisation::{
+    errors_by_schemes, estimate_from_difference, estimate_from_second,
+};
 pub use distance::{hellinger, hellinger_of_masses, total_variation, total_variation_of_masses};
 pub use moments::moments;
 pub(crate) use moments::{EstimatedMoments, Roughness, excess_variances, jackknife};
@@ -136,6 +138,9 @@ pub struct EstimatedDensity {
     /// Share of the maximum below which values are what the solver leaves; zero where every cell has its digits,
     /// whatever its mass.
     pub negligible: f64,
+    /// What the ends of the ranges may have changed. It changes from cell to cell as the density itself does, and makes
+    /// no feature: so it is no part of the standard errors, by which neighbours are told apart, but of what is stated.
+    pub truncation: Truncation,
 }
 
 /// [`EstimatedDensity::negligible`] of a density whose solver bounds the error of all masses together.
@@ -144,6 +149,16 @@ pub const NEGLIGIBLE: f64 = 1e-7;
 /// [`EstimatedDensity::negligible`] of a density of quantities: values that the solver leaves in single cells add up
 /// along level lines.
 pub(crate) const NEGLIGIBLE_OF_QUANTITIES: f64 = 1e-5;
+
+/// What the ends of the ranges may have changed of a density.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Truncation {
+    /// Share by which all values may be off alike.
+    pub share: f64,
+    /// By how much each value may be off besides, with its sign; nothing where no more than the share is.
+    pub change: Vec<f64>,
+}
 
 impl EstimatedDensity {
     /// Whether there is one value a cell of every estimate: what was read from a file may not have it.
@@ -162,6 +177,26 @@ impl EstimatedDensity {
                 .into_iter()
                 .all(fits)
             && variants.iter().all(fits)
+            && (self.truncation.change.is_empty() || fits(&self.truncation.change))
+    }
+
+    /// Errors as they are stated, of each value: those by which neighbours are told apart, and what the ends of the
+    /// ranges may have changed.
+    pub fn stated_errors(&self) -> Vec<f64> {
+        if self.truncation == Truncation::default() {
+            return self.standard_error.clone();
+        }
+        let errors = self.standard_error.iter().enumerate();
+        errors
+            .map(|(cell, error)| error + self.truncated(cell))
+            .collect()
+    }
+
+    /// What the ends of the ranges may have changed of a value.
+    pub(crate) fn truncated(&self, cell: usize) -> f64 {
+        let value = self.density.values.get(cell).unwrap_or(&0.0);
+        let change = self.truncation.change.get(cell).unwrap_or(&0.0);
+        self.truncation.share * value.abs() + change.abs()
     }
 
     /// Whether its values carry noise, as those of sampled methods do; else its errors are those of a grid.

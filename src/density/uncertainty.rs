@@ -69,6 +69,7 @@ pub(crate) fn estimate_projected(
         variants,
         structure: Structure::default(),
         negligible: crate::density::NEGLIGIBLE,
+        truncation: Default::default(),
     })
 }
 

@@ -182,9 +182,11 @@ pub(super) fn band(density: &EstimatedDensity) -> Option<(Vec<f64>, &'static str
         return None;
     };
     let values = density.density.values.iter().zip(second);
-    let difference = values.map(|(value, second)| (value - second).abs());
+    let difference = values.enumerate();
+    let difference =
+        difference.map(|(cell, (value, second))| (value - second).abs() + density.truncated(cell));
     Some((
         difference.collect(),
-        "± the difference to a second discretisation on the same cells",
+        "± the difference to a second discretisation on the same cells, and what open ends may change",
     ))
 }

@@ -68,6 +68,7 @@ impl Session for Exact {
                 variants: Variants::None,
                 structure: Structure::default(),
                 negligible: NEGLIGIBLE,
+                truncation: Default::default(),
             }],
             sensitivity: None,
         })

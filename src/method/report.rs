@@ -3,7 +3,7 @@
 
 use super::Problem;
 use super::measures::{Cells, broken, derive};
-use super::tails::{self, Layers};
+use super::tails;
 use crate::continuation::measure::{
     DEVIATION, EDGE_MASS, ESCAPE_RATE, MEAN, NEGATIVE_MASS, NUMERICAL_DIFFUSION,
 };
@@ -46,6 +46,15 @@ pub(super) struct Reporter<'a> {
     leak: f64,
 }
 
+/// Shares of the mass that a solution may lack.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Missing {
+    /// What lies beyond the ends of the ranges.
+    pub(super) beyond: f64,
+    /// What leaves within one relaxation time.
+    pub(super) leak: f64,
+}
+
 impl<'a> Reporter<'a> {
     /// The report of a solve by a method of this name, of which nothing is to be said yet.
     pub(super) fn new(method: &'static str, problem: &'a Problem) -> Self {
@@ -54,6 +63,15 @@ impl<'a> Reporter<'a> {
             report: SolveReport::solved(method),
             beyond: Vec::new(),
             leak: 0.0,
+        }
+    }
+
+    /// Shares of the mass that the ends of the ranges may have cut off: what lies beyond them, and what leaves within
+    /// one relaxation time, which is missing inside.
+    pub(super) fn missing(&self) -> Missing {
+        Missing {
+            beyond: self.beyond.iter().flatten().sum(),
+            leak: self.leak,
         }
     }
 
@@ -119,9 +137,12 @@ impl<'a> Reporter<'a> {
 
     /// Mass in the cells at the ends of each axis that are not walls of the system.
     pub(super) fn edge_mass(&mut self, mass: &[f64], closed: &[[bool; 2]]) {
-        let layers = tails::layers(self.space(), mass, closed);
-        self.beyond = layers.iter().map(|ends| ends.map(Layers::beyond)).collect();
-        for (axis, ends) in layers.into_iter().enumerate() {
+        let tails = tails::tails(self.space(), mass, closed);
+        self.beyond = tails
+            .iter()
+            .map(|ends| ends.map(|end| end.beyond))
+            .collect();
+        for (axis, ends) in tails.into_iter().enumerate() {
             let mass = ends[0].outer + ends[1].outer;
             self.report
                 .add(&EDGE_MASS, self.problem.family().axis(axis), mass);

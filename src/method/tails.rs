@@ -1,50 +1,82 @@
-//! What lies beyond the ends of the ranges: its mass from how that of the outermost cells falls, and what it would do
-//! to means and deviations. What leaves within one relaxation time is missing inside as well, and counts as beyond.
+//! What lies beyond the ends of the ranges: its mass from how the density falls near them, and what it would do to means
+//! and deviations. What leaves within one relaxation time is missing inside as well, and counts as beyond.
 
 use crate::density::{EstimatedMoments, Moments};
 use crate::space::CellSpace;
 
-/// Largest ratio of the masses of neighbouring layers that is gone on with: a density that does not fall toward the
-/// end says nothing of what is beyond it.
-const SLOWEST: f64 = 0.9;
+/// Distance from an open end, in lengths over which the density falls by e, from which on it falls as it would were
+/// there no end: nearer to it what leaves is missing.
+const FROM_END: f64 = 2.0;
 
-/// Masses of the two outermost layers of cells at an end of an axis.
+/// Least number of times by which a density must fall by e over its axis for its fall to be gone on with: else it says
+/// nothing of what is beyond the end.
+const LEAST_FALL: f64 = 4.0;
+
+/// How a density ends along one axis.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Layers {
+pub(super) struct Tail {
+    /// Mass in the outermost cells.
     pub(super) outer: f64,
-    inner: f64,
+    /// Mass beyond the end, were the density to go on falling as it does near it.
+    pub(super) beyond: f64,
 }
 
-impl Layers {
-    /// Mass beyond the end, were the density to fall as it does over the last cells: a geometric series.
-    pub(super) fn beyond(self) -> f64 {
-        if self.outer <= 0.0 {
-            return 0.0;
+/// The tail at the first edge of cells of these widths.
+fn tail(cells: &[(f64, f64)]) -> Tail {
+    let outer = cells.first().map_or(0.0, |(mass, _)| *mass);
+    let length: f64 = cells.iter().map(|(_, width)| width).sum();
+    let mut edge = 0.0;
+    let mut best = Tail {
+        outer,
+        beyond: outer,
+    };
+    for pair in cells.windows(2) {
+        let ((mass, width), (next, next_width)) = (pair[0], pair[1]);
+        let (outside, distance) = (edge, edge + 0.5 * width);
+        edge += width;
+        if outer <= 0.0 || mass <= 0.0 {
+            continue;
         }
-        let ratio = self.outer / self.inner.max(self.outer);
-        let ratio = ratio.min(SLOWEST);
-        self.outer * ratio / (1.0 - ratio)
+        let rate = (next / next_width / (mass / width)).ln() / (0.5 * (width + next_width));
+        if rate * length < LEAST_FALL {
+            break;
+        }
+        // The mass of a cell of an exponential density, and what follows of it beyond the end.
+        best.beyond = mass / (rate * width).exp_m1() * (-rate * outside).exp();
+        if rate * distance >= FROM_END {
+            break;
+        }
     }
+    best
 }
 
-/// The layers at the ends of every axis from the masses of all cells; nothing at ends that are `closed`.
-pub(super) fn layers(space: &CellSpace, mass: &[f64], closed: &[[bool; 2]]) -> Vec<[Layers; 2]> {
-    let mut found = vec![[Layers::default(); 2]; space.dimension()];
+/// The tails at the ends of every axis from the masses of all cells; nothing at ends that are `closed`.
+pub(super) fn tails(space: &CellSpace, mass: &[f64], closed: &[[bool; 2]]) -> Vec<[Tail; 2]> {
+    let axes = space.axes().iter().enumerate();
+    let mut along: Vec<Vec<(f64, f64)>> = axes
+        .map(|(_, axis)| {
+            (0..axis.count())
+                .map(|cell| (0.0, axis.width(cell)))
+                .collect()
+        })
+        .collect();
     for (cell, &mass) in mass.iter().enumerate() {
-        for (axis, ends) in found.iter_mut().enumerate() {
-            let position = space.position(cell, axis);
-            let from_end = [position, space.axes()[axis].count() - 1 - position];
-            for (end, place) in from_end.into_iter().enumerate() {
-                match place {
-                    _ if closed[axis][end] => {}
-                    0 => ends[end].outer += mass,
-                    1 => ends[end].inner += mass,
-                    _ => {}
-                }
+        for (axis, cells) in along.iter_mut().enumerate() {
+            cells[space.position(cell, axis)].0 += mass;
+        }
+    }
+    let ends = along.into_iter().zip(closed).map(|(mut cells, closed)| {
+        let lower = tail(&cells);
+        cells.reverse();
+        let mut ends = [lower, tail(&cells)];
+        for (end, closed) in ends.iter_mut().zip(closed) {
+            if *closed {
+                *end = Tail::default();
             }
         }
-    }
-    found
+        ends
+    });
+    ends.collect()
 }
 
 /// What lies beyond the ends of the axes, for moments.
@@ -114,9 +146,9 @@ mod tests {
         let masses: Vec<f64> = edges
             .map(|edge| (-edge[0]).exp() - (-edge[1]).exp())
             .collect();
-        let layers = layers(&space, &masses, &[[true, false]]);
-        let found = layers[0].map(Layers::beyond);
-        assert_eq!(found[0], 0.0, "nothing is beyond a wall");
+        let ends = tails(&space, &masses, &[[true, false]])[0];
+        assert_eq!(ends[0], Tail::default(), "nothing is beyond a wall");
+        let found = ends.map(|end| end.beyond);
         assert!((found[1] / (-6.0_f64).exp() - 1.0).abs() < 1e-12);
         let total: f64 = masses.iter().sum();
         let inside: Vec<f64> = masses.iter().map(|mass| mass / total).collect();
@@ -133,12 +165,29 @@ mod tests {
     }
 
     #[test]
-    fn a_density_that_rises_toward_its_end_may_go_on_for_long() {
-        let rising = Layers {
-            outer: 0.2,
-            inner: 0.1,
+    fn what_leaves_through_an_end_does_not_hide_what_is_beyond_it() {
+        // A normal density to 4.2 deviations, and the same next to an end that takes what reaches it.
+        let axis = Axis::uniform(-4.2, 4.2, 84).unwrap();
+        let space = CellSpace::new(vec![axis.clone()]).unwrap();
+        let whole = |x: f64| (-0.5 * x * x).exp() / std::f64::consts::TAU.sqrt();
+        let absorbed = |x: f64| whole(x) * (1.0 - (-4.2 * (4.2 - x)).exp());
+        let beyond = |of: &dyn Fn(f64) -> f64| {
+            let masses: Vec<f64> = axis.centres().into_iter().map(|x| 0.1 * of(x)).collect();
+            tails(&space, &masses, &[[true, false]])[0][1].beyond
         };
-        assert!((rising.beyond() - 1.8).abs() < 1e-12);
-        assert_eq!(Layers::default().beyond(), 0.0);
+        // The mass beyond 4.2 deviations.
+        let exact = 1.334_6e-5;
+        // An exponential from 0.65 deviations inside, where the normal density falls by 3.5 a deviation, is too high by
+        // exp(0.65²/2) and by 4.4/3.5. Of what the end takes exp(-2) is missing there, and the fall is steeper for it.
+        let found = beyond(&whole) / exact;
+        assert!(found > 1.3 && found < 1.7, "{found}");
+        let found = beyond(&absorbed) / exact;
+        assert!(found > 0.5 && found < 1.3, "{found}");
+    }
+
+    #[test]
+    fn a_density_that_rises_toward_its_end_may_go_on() {
+        assert_eq!(tail(&[(0.2, 1.0), (0.1, 1.0)]).beyond, 0.2);
+        assert_eq!(tail(&[(0.0, 1.0), (0.1, 1.0)]).beyond, 0.0);
     }
 }

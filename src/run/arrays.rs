@@ -6,8 +6,10 @@
 //! | `f_c` (the parameter) | parameter | its values |
 //! | `x`, `x_edges` | cells of the axis, edges | centres and edges of the cells |
 //! | `p_x`, `p_xy` | parameter, axes … | density; attribute `centre_of_symmetry` where the system declares one, `formulas` of quantities |
-//! | `p_x_error` | as `p_x` | standard error |
+//! | `p_x_error` | as `p_x` | standard error, with what open ends of the ranges may have changed (generator) |
 //! | `p_x_second` | as `p_x` | density by a second discretisation (generator) |
+//! | `p_x_truncated` | parameter | share by which the ends of the ranges may have changed all of `p_x` (generator) |
+//! | `p_x_closed` | as `p_x` | by how much closed ends may change `p_x` besides; where enough leaves (generator) |
 //! | `p_x_replicate` | parameter, replicate, axes … | densities without one group of samples each (SGCM) |
 //! | `p_y_kink_0` | parameter; for a joint density also the other axis | jump of ∂(log p)/∂(axis) across a plane; attributes `axis`, `at`; zero with the attribute `bends` where only higher derivatives jump |
 //!
@@ -147,6 +149,22 @@ impl Layout {
         )
     }
 
+    /// By how much closed ends may change the density.
+    pub(super) fn closed(family: &Family, estimate: &EstimatedDensity) -> Self {
+        let words = words(family, estimate.observable);
+        let long_name = format!("what closed ends of the ranges may change of the {words}");
+        let name = closed(family, estimate.observable);
+        Self::of_cells(family, estimate, name, long_name)
+    }
+
+    /// The share by which the ends of the ranges may have changed all of the density.
+    pub(super) fn truncated(family: &Family, estimate: &EstimatedDensity) -> Self {
+        let words = words(family, estimate.observable);
+        let long_name = format!("share by which ends of the ranges may have changed the {words}");
+        let name = truncated(family, estimate.observable);
+        Self::new(name, vec![(family.parameter().to_owned(), 1)], long_name)
+    }
+
     /// The densities without one group of samples each.
     pub(super) fn replicates(family: &Family, estimate: &EstimatedDensity, count: usize) -> Self {
         let long_name = format!(
@@ -242,6 +260,16 @@ pub(super) fn second(family: &Family, observable: Observable) -> String {
     density(family, observable) + "_second"
 }
 
+/// Name of what closed ends may change of it.
+pub(super) fn closed(family: &Family, observable: Observable) -> String {
+    density(family, observable) + "_closed"
+}
+
+/// Name of the share by which the ends may have changed all of it.
+pub(super) fn truncated(family: &Family, observable: Observable) -> String {
+    density(family, observable) + "_truncated"
+}
+
 /// Name of its replicates.
 pub(super) fn replicates(family: &Family, observable: Observable) -> String {
     density(family, observable) + "_replicate"
@@ -279,6 +307,8 @@ pub(super) fn names(family: &Family, observables: &[Observable]) -> Vec<Named> {
             named(density, ""),
             named(error, "standard error of the "),
             named(second, "second discretisation of the "),
+            named(closed, "what closed ends may change of the "),
+            named(truncated, "share by which ends may have changed the "),
             named(replicates, "replicates of the "),
             Named {
                 is_numbered: true,

@@ -84,8 +84,17 @@ impl<'a> Store<'a> {
         let whole = |values: &'a [f64]| vec![Cow::Borrowed(values)];
         let values = whole(&estimate.density.values);
         self.put(Layout::density(family, estimate), index, values);
-        let errors = whole(&estimate.standard_error);
+        let errors = vec![Cow::Owned(estimate.stated_errors())];
         self.put(Layout::error(family, estimate), index, errors);
+        let truncation = &estimate.truncation;
+        if truncation.share > 0.0 {
+            let share = vec![vec![truncation.share].into()];
+            self.put(Layout::truncated(family, estimate), index, share);
+        }
+        if !truncation.change.is_empty() {
+            let change = whole(&truncation.change);
+            self.put(Layout::closed(family, estimate), index, change);
+        }
         match &estimate.variants {
             Variants::None => {}
             Variants::Scheme(second) => {

@@ -9,7 +9,8 @@ use super::zarr::StoredArray;
 use super::{RunError, arrays};
 use crate::continuation::Subject;
 use crate::density::{
-    Density, EstimatedDensity, Kink, NEGLIGIBLE, Observable, Structure, Variants, laid_out,
+    Density, EstimatedDensity, Kink, NEGLIGIBLE, Observable, Structure, Truncation, Variants,
+    errors_by_schemes, laid_out,
 };
 use crate::method::OneAxisFamily;
 use crate::space::{Axis, CellSpace};
@@ -35,6 +36,8 @@ struct Observed {
     density: StoredArray,
     error: StoredArray,
     second: Option<StoredArray>,
+    truncated: Option<StoredArray>,
+    closed: Option<StoredArray>,
     replicates: Option<StoredArray>,
     centre: Option<Vec<f64>>,
     negligible: f64,
@@ -152,20 +155,46 @@ impl Observed {
         }
         let centre = self.centre.clone();
         let centre = centre.filter(|_| symmetry.is_some_and(reflects));
+        let density = Density {
+            axes: self.axes.clone(),
+            values: in_cells(&self.density)?,
+        };
+        let variants = self.variants(path, index)?;
+        let truncation = self.truncation(path, index)?;
+        // What is stored has what the ends may have changed.
+        let standard_error = match variants.second_scheme() {
+            Some(second) if truncation.share > 0.0 => errors_by_schemes(&density, second),
+            _ => in_cells(&self.error)?,
+        };
         Ok(EstimatedDensity {
             observable: self.observable,
-            density: Density {
-                axes: self.axes.clone(),
-                values: in_cells(&self.density)?,
-            },
-            standard_error: in_cells(&self.error)?,
-            variants: self.variants(path, index)?,
+            density,
+            standard_error,
+            variants,
             structure: Structure {
                 centre,
                 kinks,
                 ..Structure::default()
             },
             negligible: self.negligible,
+            truncation,
+        })
+    }
+
+    fn truncation(&self, path: &Path, index: u64) -> Result<Truncation, RunError> {
+        let read = |array: &Option<StoredArray>| match array {
+            Some(array) => at_index(path, array, index),
+            None => Ok(Vec::new()),
+        };
+        let known = |values: &Vec<f64>| !is_missing(values);
+        let (share, change) = (read(&self.truncated)?, read(&self.closed)?);
+        Ok(Truncation {
+            share: share
+                .first()
+                .copied()
+                .filter(|share| share.is_finite())
+                .unwrap_or(0.0),
+            change: Some(change).filter(known).unwrap_or_default(),
         })
     }
 
@@ -309,6 +338,8 @@ impl Opened {
             observable,
             error: self.shaped(&arrays::error(family, observable), &shape)?,
             second: self.optional(&arrays::second(family, observable), &shape)?,
+            truncated: self.optional(&arrays::truncated(family, observable), &[])?,
+            closed: self.optional(&arrays::closed(family, observable), &shape)?,
             replicates: self.optional(&arrays::replicates(family, observable), &shape)?,
             centre: centre.filter(|centre| centre.len() == axes.len()),
             kinks: self.kinks(family, observable, &shape)?,

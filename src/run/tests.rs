@@ -54,6 +54,7 @@ fn point(value: f64, solved: bool) -> Point {
         variants: crate::density::Variants::None,
         structure: crate::density::Structure::default(),
         negligible: crate::density::NEGLIGIBLE,
+        truncation: Default::default(),
     };
     let detection = Detection {
         indicators: Vec::new(),

@@ -20,6 +20,7 @@ fn estimated(axes: Vec<Axis>, values: Vec<f64>, kinks: &[f64]) -> EstimatedDensi
             ..Structure::default()
         },
         negligible: crate::density::NEGLIGIBLE,
+        truncation: Default::default(),
         density: Density { axes, values },
     }
 }

@@ -19,7 +19,7 @@ use super::place_error;
 use super::significance::Limits;
 use super::surroundings::{contents, rims};
 use super::{Detection, Feature, FeatureKind, Flank, Indicator, IndicatorKind, Signature, Verdict};
-use crate::density::{Density, EstimatedDensity, Kink, Structure, Variants};
+use crate::density::{Density, EstimatedDensity, Kink, Structure, Truncation, Variants};
 use crate::space::Axis;
 
 /// Turns over which a density is laid out.
@@ -69,6 +69,10 @@ impl<'a> Cover<'a> {
                 ..own.structure.clone()
             },
             negligible: own.negligible,
+            truncation: Truncation {
+                share: own.truncation.share,
+                change: pick(&own.truncation.change),
+            },
         };
         Some(Self { own, laid })
     }

@@ -3,7 +3,9 @@
 use super::candidate::{Candidate, judge};
 use super::closed::Cover;
 use super::exact::{self, by_kind_and_height, present_places};
-use super::indicator::{Counted, at_centre, correct, flanks_from_centre, put_right, shoulders};
+use super::indicator::{
+    Counted, at_centre, correct, flanks_from_centre, flanks_of_crests, put_right, shoulders,
+};
 use super::persistence::{components, grid};
 use super::place_error;
 use super::significance::Limits;
@@ -143,7 +145,7 @@ impl Detector for PersistenceDetector {
         }
         match density.density.axes.len() {
             1 => shoulders(density),
-            _ => flanks_from_centre(density),
+            _ => [flanks_from_centre(density), flanks_of_crests(density)].concat(),
         }
     }
 
@@ -175,6 +177,7 @@ mod tests {
             variants: crate::density::Variants::None,
             structure: crate::density::Structure::default(),
             negligible: crate::density::NEGLIGIBLE,
+            truncation: Default::default(),
         }
     }
 
@@ -232,6 +235,7 @@ mod tests {
             variants: crate::density::Variants::None,
             structure: crate::density::Structure::default(),
             negligible: crate::density::NEGLIGIBLE,
+            truncation: Default::default(),
         };
         let detection = detector().detect(&density);
         let peaks = |verdict| {

@@ -227,6 +227,7 @@ mod tests {
             variants: Variants::None,
             structure: Structure::default(),
             negligible: crate::density::NEGLIGIBLE,
+            truncation: Default::default(),
             density: Density {
                 axes: vec![axis.clone()],
                 values,

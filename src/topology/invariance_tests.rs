@@ -20,6 +20,7 @@ fn rough(noise: &[f64]) -> EstimatedDensity {
         variants: crate::density::Variants::None,
         structure: crate::density::Structure::default(),
         negligible: crate::density::NEGLIGIBLE,
+        truncation: Default::default(),
         density: Density {
             values: (0..99).map(value).collect(),
             axes: vec![x, y],
@@ -40,6 +41,7 @@ fn rearranged(
         variants: crate::density::Variants::None,
         structure: crate::density::Structure::default(),
         negligible: crate::density::NEGLIGIBLE,
+        truncation: Default::default(),
         density: Density {
             axes,
             values: take(&of.density.values),

@@ -29,6 +29,17 @@ fn by_reading_again(estimated: &EstimatedDensity, feature: &Feature) -> Option<F
     let own = near(values)?;
     let second = field.second_scheme().and_then(near);
     let second = second.as_ref().unwrap_or(&own);
+    let changes = estimated.truncation.change.iter();
+    let closed: Vec<f64> = changes
+        .zip(values)
+        .map(|(change, value)| value + change)
+        .collect();
+    let closed = if closed.is_empty() {
+        None
+    } else {
+        near(&closed)
+    };
+    let closed = closed.as_ref().unwrap_or(&own);
     let cell = field.cell_at(&own.position)?;
     let noise = *estimated.standard_error.get(cell)?;
     // The place of a ring is any point of it.
@@ -38,15 +49,18 @@ fn by_reading_again(estimated: &EstimatedDensity, feature: &Feature) -> Option<F
     };
     let (rough, independent) = own.shifts(&field, noise, flat);
     let along = |k: usize| {
-        let [given, own, second] = [at, &own.position, &second.position].map(|place| place[k]);
-        (given - own).abs() + (second - own).abs() + rough[k] + independent[k]
+        let [given, own, second, closed] =
+            [at, &own.position, &second.position, &closed.position].map(|place| place[k]);
+        let read = (given - own).abs() + (second - own).abs() + (closed - own).abs();
+        read + rough[k] + independent[k]
     };
     Some(FeatureErrors {
         position: (0..at.len()).map(along).collect(),
         density: Some(
             (feature.density - own.jet.value).abs()
                 + own.error(estimated).max(noise)
-                + whole(estimated) * feature.density.abs(),
+                + whole(estimated) * feature.density.abs()
+                + estimated.truncated(cell),
         ),
     })
 }

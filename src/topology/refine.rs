@@ -162,6 +162,7 @@ mod tests {
             variants: crate::density::Variants::None,
             structure: crate::density::Structure::default(),
             negligible: crate::density::NEGLIGIBLE,
+            truncation: Default::default(),
             density: Density { axes, values },
         }
     }

@@ -108,6 +108,7 @@ fn estimated(
         variants: pbif::density::Variants::None,
         structure: pbif::density::Structure::default(),
         negligible: pbif::density::NEGLIGIBLE,
+        truncation: Default::default(),
     }
 }
 

@@ -118,8 +118,9 @@ pub(crate) fn ranges(potential: &dyn Fn(f64, f64) -> f64, depth: f64) -> [(f64, 
     })
 }
 
-/// Exact masses of the cells, Σ = 1.
-pub(crate) fn exact(space: &CellSpace, potential: &dyn Fn(f64, f64) -> f64) -> Vec<f64> {
+/// Exact masses of the cells, of a density whose integral over the plane is one.
+pub(crate) fn exact(space: &CellSpace, case: &Case) -> Vec<f64> {
+    let potential = &*case.potential;
     let mass = |cell: usize| {
         let centre = space.centre(cell);
         let width = |axis: usize| space.axes()[axis].width(space.position(cell, axis));
@@ -130,9 +131,10 @@ pub(crate) fn exact(space: &CellSpace, potential: &dyn Fn(f64, f64) -> f64) -> V
         });
         terms.sum::<f64>()
     };
-    let masses: Vec<f64> = (0..space.n_cells()).map(mass).collect();
-    let total: f64 = masses.iter().sum();
-    masses.iter().map(|mass| mass / total).collect()
+    let [whole] = integral(case, |_, _| [1.0]);
+    (0..space.n_cells())
+        .map(|cell| mass(cell) / whole)
+        .collect()
 }
 
 /// Steps along each axis of the sums that stand for integrals of the exact density.

@@ -93,6 +93,7 @@ impl<F: Formula> Exact<F> {
             variants: Variants::None,
             structure: (self.structure)(value),
             negligible: crate::density::NEGLIGIBLE,
+            truncation: Default::default(),
         }];
         solution
     }

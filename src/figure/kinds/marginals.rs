@@ -246,7 +246,7 @@ pub(super) fn within(curve: Vec<(f64, f64)>, range: (f64, f64)) -> Vec<(f64, f64
 
 /// The outline of ± 2 standard errors; empty for a method without sampling.
 fn band(estimated: &EstimatedDensity, window: (f64, f64), range: (f64, f64)) -> Vec<(f64, f64)> {
-    let errors = &estimated.standard_error;
+    let errors = &estimated.stated_errors();
     let values = &estimated.density.values;
     if errors.len() != values.len() || !errors.iter().any(|&error| error > 0.0) {
         return Vec::new();

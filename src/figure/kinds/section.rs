@@ -176,6 +176,7 @@ fn section(
             ..Structure::default()
         },
         negligible: 0.0,
+        truncation: Default::default(),
     })
 }
 
@@ -211,6 +212,7 @@ mod tests {
             variants: Variants::None,
             structure: Structure::default(),
             negligible: 0.0,
+            truncation: Default::default(),
         }
     }
 

@@ -27,7 +27,7 @@ pub(crate) fn number(value: f64) -> String {
 /// The standard error of a cell; empty for densities without sampling.
 pub(crate) fn error(estimated: &EstimatedDensity, cell: usize) -> String {
     match estimated.standard_error.get(cell) {
-        Some(&error) if error > 0.0 => number(error),
+        Some(&error) if error > 0.0 => number(error + estimated.truncated(cell)),
         _ => String::new(),
     }
 }

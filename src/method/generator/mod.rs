@@ -24,6 +24,7 @@ mod source;
 mod spectra;
 mod stand;
 mod trail;
+mod truncation;
 #[cfg(test)]
 mod turns_tests;
 mod unknowns;

@@ -135,6 +135,7 @@ pub(super) fn solution<'session>(
     for one in &mut densities {
         let kinked = &source.kinked;
         one.structure = maps.structure(system, problem, masses, one.observable, kinked);
+        one.truncation.share = reporter.missing().beyond;
         // Of quantities sub-cells leave more than the quadrature does.
         if one.observable == Observable::Marginal(0) {
             know(one, system, found);

@@ -61,10 +61,12 @@ pub(super) struct GeneratorSession {
 }
 
 /// What was solved at one point.
-struct PointSolve {
-    value: f64,
-    system: Arc<dyn System>,
-    steady: RateSteadyState,
+pub(super) struct PointSolve {
+    pub(super) value: f64,
+    pub(super) system: Arc<dyn System>,
+    pub(super) steady: RateSteadyState,
+    /// Rates at which the cells' masses leave Ω.
+    pub(super) escape: Vec<f64>,
     /// The generator by the second scheme; `None` in a check, which states no error of its own.
     second: Option<Generator>,
     /// By how much the second scheme's unknowns differ, where that came along with the solve, and whether the unknowns
@@ -223,6 +225,7 @@ impl GeneratorSession {
             value,
             system,
             steady,
+            escape: generator.escape,
             second,
             along: answer.map(|answer| (answer, near)),
         })
@@ -257,7 +260,10 @@ impl GeneratorSession {
         for judged in resolution(solved.system.as_ref(), space, &masses) {
             reporter.resolution(&judged);
         }
-        let (densities, second) = self.densities(solved, &masses)?;
+        let (mut densities, second) = self.densities(solved, &masses)?;
+        if solved.second.is_some() {
+            self.truncate(solved, &masses, reporter.missing(), &mut densities)?;
+        }
         // What is negative along a series is told of its modes.
         let carried = |axis: &usize| space.axes().get(*axis).is_some_and(|axis| axis.is_modes());
         let by_cells = densities

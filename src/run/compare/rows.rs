@@ -255,7 +255,7 @@ fn densities<'a>(run: &ComparedRun<'a>) -> Columns<'a, AtCell<'a>> {
             row.estimated.density.values[row.cell]
         }),
         number("standard_error", |row: &Row<'a>| {
-            row.estimated.standard_error[row.cell]
+            row.estimated.standard_error[row.cell] + row.estimated.truncated(row.cell)
         }),
     ])
 }

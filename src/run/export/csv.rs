@@ -35,7 +35,8 @@ fn add(text: &mut String, point: &Point, index: usize) {
     let centres: Vec<Vec<String>> = (axes.iter())
         .map(|axis| axis.centres().into_iter().map(format_number).collect())
         .collect();
-    let numbers = estimate.density.values.iter().zip(&estimate.standard_error);
+    let errors = estimate.stated_errors();
+    let numbers = estimate.density.values.iter().zip(&errors);
     for (cell, (density, error)) in numbers.enumerate() {
         let place = match &centres[..] {
             [x, y] => format!("{},{}", x[cell / y.len()], y[cell % y.len()]),

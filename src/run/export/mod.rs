@@ -257,7 +257,7 @@ fn density_arrays(
         let clipped = values.map(|&value| if value < 0.0 { 0.0 } else { value });
         Some(clipped.collect())
     };
-    let error = |one: &EstimatedDensity| Some(one.standard_error.clone());
+    let error = |one: &EstimatedDensity| Some(one.stated_errors());
     let second = |one: &EstimatedDensity| match &one.variants {
         Variants::Scheme(second) => Some(second.clone()),
         _ => None,

@@ -37,6 +37,7 @@ fn point(value: f64, solved: bool) -> Point {
             density: Density { axes, values },
             structure: Structure::default(),
             negligible: NEGLIGIBLE,
+            truncation: Default::default(),
         }
     };
     let densities = subject().observables.into_iter().map(density);

@@ -17,7 +17,7 @@ use crate::run::RunError;
 use crate::run::atomic::begin_durably;
 
 /// First bytes of the file: program and format.
-const MAGIC: &[u8; 8] = b"pbif-j5\n";
+const MAGIC: &[u8; 8] = b"pbif-j6\n";
 
 /// Bytes of a length and of a checksum.
 const WORD: usize = 8;

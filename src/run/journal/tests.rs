@@ -75,6 +75,7 @@ fn density(observable: Observable, variants: fn(Vec<f64>) -> Variants) -> Estima
             is_spread: true,
         },
         negligible: 1e-9,
+        truncation: Default::default(),
     }
 }
 

@@ -88,6 +88,7 @@ fn point(value: f64, replicates: Option<usize>, kinks: usize) -> Point {
             },
             // A number that readers of JSON may take for its neighbour.
             negligible: 4.806865314961215e-8,
+            truncation: Default::default(),
         }
     });
     Point {

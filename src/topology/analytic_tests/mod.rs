@@ -60,6 +60,7 @@ fn exact(axes: Vec<Axis>, values: Vec<f64>) -> EstimatedDensity {
         variants: Variants::None,
         structure: crate::density::Structure::default(),
         negligible: crate::density::NEGLIGIBLE,
+        truncation: Default::default(),
         density,
     }
 }

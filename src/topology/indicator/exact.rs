@@ -12,6 +12,8 @@ pub struct Flank {
     pub place: f64,
     /// The slope, positive when both are there.
     pub value: f64,
+    /// The line that it is on: 0 of a marginal and on a ray from a centre, 1 + k on a crest along the axis k.
+    pub line: usize,
 }
 
 /// The slope at its extremum of the given kind nearest to a place; none at a jump, where the slope beside it tells.
@@ -63,6 +65,7 @@ pub(super) fn flanks(profile: &Profile) -> Vec<Flank> {
         .map(|turn| Flank {
             rising: turn.is_largest,
             place: turn.place,
+            line: 0,
             value: if turn.is_largest {
                 turn.slope
             } else {

@@ -21,6 +21,7 @@
 mod beside;
 mod centre;
 mod corrected;
+mod crest;
 mod exact;
 mod fold;
 mod kind;
@@ -43,6 +44,7 @@ mod written;
 pub(crate) use beside::born_at_kink;
 pub(super) use centre::at_centre;
 pub(super) use corrected::{Counted, correct};
+pub(super) use crest::flanks_of_crests;
 pub use exact::Flank;
 pub use kind::IndicatorKind;
 pub(crate) use natural_end::peaks_at_ends;

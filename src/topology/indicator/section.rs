@@ -41,6 +41,7 @@ pub(crate) fn flanks_from_centre(estimated: &EstimatedDensity) -> Vec<Flank> {
         let is_highest = here >= left && here > right;
         let is_lowest = here <= left && here < right;
         (is_highest || is_lowest).then(|| Flank {
+            line: 0,
             rising: is_highest,
             place,
             value: if is_highest { here } else { -here },
@@ -84,6 +85,7 @@ mod tests {
                     ..Structure::default()
                 },
                 negligible: 0.0,
+                truncation: Default::default(),
             };
             flanks_from_centre(&estimated)
         };

@@ -167,6 +167,7 @@ pub(crate) fn shoulders(estimated: &EstimatedDensity) -> Vec<Flank> {
         let is_highest = here >= left && here > right;
         let is_lowest = here <= left && here < right;
         (is_highest || is_lowest).then(|| Flank {
+            line: 0,
             rising: is_highest,
             place: axis.edges()[below + 1],
             value: if is_highest { here } else { -here },
@@ -209,6 +210,7 @@ fn kinks<'a>(
             )
         };
         let flank = |jet: &Jet, rising: bool| Flank {
+            line: 0,
             rising,
             place: kink.at,
             value: if rising { slope(jet) } else { -slope(jet) },
@@ -254,6 +256,7 @@ fn bends<'a>(
         let rises = |jet: &Jet| jet.second[0] * jet.value > jet.first[0] * jet.first[0];
         let is_turn = above.value > least && rises(&below) != rises(&above);
         is_turn.then(|| Flank {
+            line: 0,
             rising: rises(&below),
             place: kink.at,
             value: if rises(&below) { slope } else { -slope },

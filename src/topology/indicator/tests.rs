@@ -239,6 +239,7 @@ fn where_a_density_is_less_than_the_solver_leaves_nothing_is_read() {
     // The same by quadrature has its digits everywhere.
     let exact = EstimatedDensity {
         negligible: 0.0,
+        truncation: Default::default(),
         ..ring(20.0)
     };
     assert_eq!(at_centre(&exact).len(), 2);

@@ -67,6 +67,71 @@ fn oscillator(seed: u64) -> Option<Case> {
     Some(case)
 }
 
+/// V'(x) of three Gaussian wells of random depths and widths at random places, in a parabola.
+fn wells(dice: &mut Dice) -> Slope {
+    let b = dice.between(0.2, 0.6);
+    let wells: Vec<[f64; 3]> = (0..3)
+        .map(|_| {
+            [
+                dice.between(-1.8, 1.8),
+                dice.between(0.4, 1.4),
+                dice.between(0.35, 0.7),
+            ]
+        })
+        .collect();
+    let one = |[at, depth, width]: &[f64; 3]| {
+        let w = width * width;
+        format!(" + {depth} (x - ({at}))/{w} exp(-(x - ({at}))^2/(2 * {w}))")
+    };
+    Slope {
+        family: "wells at random places",
+        text: format!("{b} x{}", wells.iter().map(one).collect::<String>()),
+        value: Box::new(move |x| {
+            let of = |[at, depth, width]: &[f64; 3]| {
+                let u = x - at;
+                depth * u / (width * width) * (-u * u / (2.0 * width * width)).exp()
+            };
+            b * x + wells.iter().map(of).sum::<f64>()
+        }),
+        ends: (-0.913, 0.887),
+    }
+}
+
+/// Noise of different strength on both axes, wells at random places along x, a floor that bends along y.
+fn hills(seed: u64) -> Option<Case> {
+    let mut dice = Dice::new(seed);
+    let of = wells(&mut dice);
+    let t = dice.between(0.1, 0.4);
+    let (k, a, e) = (
+        dice.between(0.5, 2.0),
+        dice.between(-0.7, 0.7),
+        dice.between(0.3, 1.0),
+    );
+    let c = dice.between(-0.6, 0.6);
+    let (mut case, text) = of_potential("both axes, wells at random places", of, t);
+    let (from, to) = (case.axes[0].from(), case.axes[0].to());
+    let reach = a.abs() + (64.0 * t / k).sqrt();
+    case.axes = axes(&mut dice, [(from, to), (-reach, reach)])?;
+    let along_y = format!("({k} (y - ({a}) tanh(x)))");
+    let along_x = format!("({text} - theta - ({a}) (1 - tanh(x)^2) {along_y})");
+    let equations = [
+        format!("-{along_x} - ({c}) {along_y}"),
+        format!("-{e} {along_y} + ({c}) {along_x}"),
+    ];
+    case.model = TypedModel::new("random", "A random system", ["x", "y"])
+        .with_equation("x", &equations[0])
+        .with_equation("y", &equations[1])
+        .with_noise("x", [format!("sqrt(2 * {t})")])
+        .with_noise("y", [format!("sqrt(2 * {t} * {e})")])
+        .with_interpretation(Interpretation::Ito)
+        .with_parameters(["theta"])
+        .build()
+        .unwrap();
+    case.words = told(&case, &equations);
+    case.points = 17;
+    Some(case)
+}
+
 /// A row that is not located names a reason; what is located holds the truth.
 #[test]
 fn what_is_located_where_noise_differs_from_place_to_place_holds_the_truth() {
@@ -80,5 +145,6 @@ fn what_is_located_where_noise_differs_from_place_to_place_holds_the_truth() {
 fn places_in_full() {
     let mut scores = run(cases(both, 9000..9040));
     scores.extend(run(cases(oscillator, 9100..9140)));
+    scores.extend(run(cases(hills, 9200..9240)));
     print_true(&scores);
 }
