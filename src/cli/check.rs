@@ -182,6 +182,11 @@ fn points(spec: &Sweep) -> String {
 /// What is worked out of a fixed point, with the exponents at both ends.
 fn exponent(spec: &Sweep) -> Option<String> {
     let family = spec.problem.family();
+    if family.largest_exponent() {
+        return Some(
+            "exponent: the largest Lyapunov exponent along the stationary density at every value, and its zeros as rows `DB`".to_owned(),
+        );
+    }
     let state = fixed_point_in_words(family)?;
     let (from, to) = family.ends();
     let at = |value: f64| match of_family(family, value) {

@@ -7,6 +7,10 @@ mod coarse;
 mod cost;
 mod forcing;
 mod jumps;
+mod largest_exponent;
+#[cfg(test)]
+#[allow(clippy::print_stdout)]
+mod largest_exponent_tests;
 #[cfg(feature = "serde")]
 mod memory;
 mod modes;
