@@ -47,7 +47,8 @@ pub(crate) use bins::{QuantityRange, automatic_bins, check_averaged};
 pub use cost::Cost;
 pub use generator::{GeneratorCost, GeneratorMethodOptions, GeneratorSource};
 pub(crate) use generator::{
-    OneAxisFamily, automatic_modes, change_by_more_modes, highest_frequency,
+    OneAxisFamily, automatic_modes, change_by_more_modes, cost_of_largest_exponent,
+    highest_frequency,
 };
 pub use measures::DerivedMeasure;
 #[cfg(feature = "store")]

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::{
-    AtPhase, FixedPointFault, Linearised, MeasureLevel, Model, ParameterValues, PassageQuestion,
-    Path, Quantity, Region, SpectrumQuestion, System, SystemError, Tangent, TangentFault,
+    AtPhase, FixedPointFault, Linearised, MeasureLevel, Model, NoiseKind, ParameterValues,
+    PassageQuestion, Path, Quantity, Region, SpectrumQuestion, System, SystemError, Tangent,
+    TangentFault,
 };
 
 /// Systems along a path: one number in, a bound system out, with names and symbols for tables and figures.
@@ -146,7 +147,9 @@ impl Family {
 
     /// Why there is no such exponent at a coordinate of the path; `None` where there is one.
     pub(crate) fn tangent_fault(&self, coordinate: f64) -> Option<TangentFault> {
-        let Some(formulas) = self.model.formulas() else {
+        let formulas = self.model.formulas();
+        let Some(formulas) = formulas.filter(|_| self.model.noise_kind() == NoiseKind::White)
+        else {
             return Some(TangentFault::NoFormulas);
         };
         let system = self.at(coordinate).ok()?;

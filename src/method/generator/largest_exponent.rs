@@ -4,11 +4,12 @@
 //! Where the derivatives of drift and noise are the same everywhere it is that of a linear equation. Else the angle of
 //! small deviations is an axis of harmonics ([`crate::system`], `tangent`): the density of state and angle is solved
 //! for as any other, and the exponent is the mean rate of stretching. Its error adds up what more harmonics change and
-//! what the cells do: the difference to fewer of them, and twice what half of the dissipation changes.
+//! what the cells do: the difference to fewer of them, twice what half of the dissipation changes, and the rate at which
+//! mass leaves them.
 
 use std::sync::Arc;
 
-use super::GeneratorSource;
+use super::{GeneratorCost, GeneratorMethodOptions, GeneratorSource};
 use crate::cancellation::Cancellation;
 use crate::continuation::measure::{DIVERGENCE, EXPONENT};
 use crate::continuation::{Finding, Measure, MeasureKind, SolveReport};
@@ -19,11 +20,14 @@ use crate::generator::{
 };
 use crate::method::MethodError;
 use crate::space::{Axis, CellSpace};
-use crate::stationary::generator::{RateError, RateOptions, RateSolver, estimate};
+use crate::stationary::generator::{RateOptions, RateSolver};
 use crate::system::{HALF_TURN, Lanes, System, Tangent};
 
 /// Harmonics of the angle that are tried one after the other.
-const HARMONICS: [usize; 7] = [4, 6, 8, 12, 16, 22, 30];
+const HARMONICS: [usize; 8] = [3, 4, 6, 8, 12, 16, 22, 30];
+
+/// Share of the change before it that the last one counts for at least: two numbers may agree by chance.
+const CHANCE: f64 = 0.1;
 
 /// Change by more harmonics, relative to the mean size of the rate of stretching, at which no more are tried.
 const CHANGE: f64 = 5e-4;
@@ -36,8 +40,8 @@ const FINER: f64 = 1.5;
 /// Operations of a factorisation on all cells beyond which no more harmonics are tried: some tens of seconds.
 const MOST_OPERATIONS: f64 = 1e12;
 
-/// Cells that the schemes reach.
-const REACH: usize = 3;
+/// Harmonics that most oscillators do with, of which the cost is told.
+const USUAL: usize = 8;
 
 /// Relative error at which solves stop to be iterated.
 const TOLERANCE: f64 = 1e-9;
@@ -85,33 +89,8 @@ pub(super) fn add_largest_exponent(
             value: sum.value + one.value,
             error: sum.error + one.error,
         });
-    let found = match tangent.linear().map(|linear| largest(&linear)) {
-        Some(Ok(exact)) => Ok(exact),
-        _ if axes == 1 || tangent.is_triangular() => {
-            let first = by_axis.iter().copied();
-            Ok(first.fold(
-                by_axis[0],
-                |most, one| if one.value > most.value { one } else { most },
-            ))
-        }
-        _ => {
-            let rates = RateOptions {
-                tolerance: TOLERANCE,
-                memory_limit_bytes: (source.options.memory_limit * 1e9) as u64,
-                ..RateOptions::default()
-            };
-            let scheme = source.options.scheme;
-            Angles {
-                tangent,
-                rates,
-                options: GeneratorOptions { scheme },
-                cancellation,
-            }
-            .exponent(space)
-        }
-    };
-    match found {
-        Ok(found) => {
+    match exponent(source, tangent, &by_axis, cancellation) {
+        Ok(Some(found)) => {
             let put = |kind: MeasureKind, one: Exponent| Measure {
                 error: Some(one.error),
                 ..kind.measure("", one.value)
@@ -120,9 +99,31 @@ pub(super) fn add_largest_exponent(
             report.put(put(DIVERGENCE, divergence));
         }
         Err(MethodError::Cancelled(cancelled)) => return Err(cancelled.into()),
-        Err(_) => report.findings.push(Finding::NoExponent),
+        Ok(None) | Err(_) => report.findings.push(Finding::NoExponent),
     }
     Ok(())
+}
+
+/// The exponent of a system, of which the mean growth rates along the axes are known.
+fn exponent(
+    source: &GeneratorSource,
+    tangent: Tangent,
+    by_axis: &[Exponent],
+    cancellation: &Cancellation,
+) -> Result<Option<Exponent>, MethodError> {
+    if let Some(Ok(exact)) = tangent.linear().map(|linear| largest(&linear)) {
+        return Ok(Some(exact));
+    }
+    if by_axis.len() == 1 || tangent.is_triangular() {
+        let largest = by_axis.iter().max_by(|a, b| a.value.total_cmp(&b.value));
+        return Ok(largest.copied());
+    }
+    let angles = Angles {
+        tangent,
+        options: &source.options,
+        cancellation,
+    };
+    angles.exponent(source.problem.space())
 }
 
 /// Mean of a function over a density, and what another discretisation changes, twice.
@@ -146,8 +147,7 @@ fn mean(
 /// State and angle of a system at one value.
 pub(super) struct Angles<'a> {
     pub(super) tangent: Tangent,
-    pub(super) rates: RateOptions,
-    pub(super) options: GeneratorOptions,
+    pub(super) options: &'a GeneratorMethodOptions,
     pub(super) cancellation: &'a Cancellation,
 }
 
@@ -158,55 +158,64 @@ struct Stretching {
     size: f64,
     /// What half of the dissipation changes, where that was asked for.
     by_scheme: f64,
+    /// Rate at which mass leaves the cells: the exponent is that of the paths which stay.
+    escape: f64,
 }
 
 impl Angles<'_> {
-    /// The exponent with its error.
-    pub(super) fn exponent(&self, space: &CellSpace) -> Result<Exponent, MethodError> {
-        let share = |axis: &Axis, most: f64| (most / axis.count() as f64).min(1.0);
-        let on = |most: f64| -> Vec<Axis> {
-            let axes = space.axes().iter();
-            axes.map(|axis| axis.refined(share(axis, most))).collect()
-        };
-        let finest = space.axes().iter().map(Axis::count).max().unwrap_or(COARSE) as f64;
-        let fine = finest.min(FINER * COARSE as f64);
-        let (coarse, fine) = (on(fine / FINER), on(fine));
-        let mut before: Option<(usize, Stretching)> = None;
-        let mut by_modes = f64::INFINITY;
-        for harmonics in HARMONICS {
-            if before.is_some() && !self.is_affordable(&fine, harmonics)? {
-                break;
-            }
-            let now = self.solve(&coarse, harmonics, false)?;
-            let Some((fewer, earlier)) = before.replace((harmonics, now)) else {
-                continue;
-            };
-            let Some((_, now)) = &before else { break };
-            by_modes = (now.mean - earlier.mean).abs();
-            if by_modes <= CHANGE * now.size {
-                before = Some((fewer, earlier));
-                break;
-            }
-        }
-        let Some((harmonics, on_coarse)) = before else {
-            return Ok(Exponent {
-                value: 0.0,
-                error: f64::INFINITY,
-            });
+    /// The exponent with its error; `None` where there is no steady state of state and angle on these cells.
+    pub(super) fn exponent(&self, space: &CellSpace) -> Result<Option<Exponent>, MethodError> {
+        let [coarse, fine] = cells(space);
+        let Some((harmonics, on_coarse, by_harmonics)) = self.harmonics(&coarse, &fine)? else {
+            return Ok(None);
         };
         let found = self.solve(&fine, harmonics, true)?;
-        Ok(Exponent {
+        Ok(found.map(|found| Exponent {
             value: found.mean,
-            error: by_modes + (found.mean - on_coarse.mean).abs() + 2.0 * found.by_scheme.abs(),
-        })
+            error: by_harmonics
+                + (found.mean - on_coarse).abs()
+                + 2.0 * found.by_scheme.abs()
+                + found.escape,
+        }))
+    }
+
+    /// How many harmonics do, the rate of stretching with them on coarse cells, and what more of them change there.
+    fn harmonics(
+        &self,
+        coarse: &[Axis],
+        fine: &[Axis],
+    ) -> Result<Option<(usize, f64, f64)>, MethodError> {
+        let mut tried: Vec<(usize, f64)> = Vec::new();
+        let mut changes: Vec<f64> = Vec::new();
+        let mut by_harmonics = None;
+        for harmonics in HARMONICS {
+            if by_harmonics.is_some() && !self.is_affordable(fine, harmonics)? {
+                break;
+            }
+            let Some(now) = self.solve(coarse, harmonics, false)? else {
+                return Ok(None);
+            };
+            if let Some((_, fewer)) = tried.last() {
+                changes.push((now.mean - fewer).abs());
+            }
+            if let [.., earlier, last] = changes[..] {
+                let change = last.max(CHANCE * earlier);
+                by_harmonics = Some(change);
+                if change <= CHANGE * now.size {
+                    break;
+                }
+            }
+            tried.push((harmonics, now.mean));
+        }
+        let last = tried.last().zip(by_harmonics);
+        Ok(last.map(|(&(harmonics, mean), change)| (harmonics, mean, change)))
     }
 
     /// Whether a factorisation with so many harmonics takes little enough.
     fn is_affordable(&self, cells: &[Axis], harmonics: usize) -> Result<bool, MethodError> {
         let space = with_angle(cells, harmonics)?;
-        let limit = self.rates.memory_limit_bytes;
-        let plan = estimate(&space, &[REACH; 3], limit, None);
-        Ok(plan.is_ok_and(|plan| plan.operations <= MOST_OPERATIONS))
+        let cost = self.options.cost(&space);
+        Ok(cost.is_ok_and(|cost| cost.factors.operations <= MOST_OPERATIONS))
     }
 
     fn solve(
@@ -214,13 +223,18 @@ impl Angles<'_> {
         cells: &[Axis],
         harmonics: usize,
         is_judged: bool,
-    ) -> Result<Stretching, MethodError> {
+    ) -> Result<Option<Stretching>, MethodError> {
         let space = with_angle(cells, harmonics)?;
         let generator = self.assemble(&space, Dissipation::Full)?;
-        let mut solver = RateSolver::new(space.clone(), self.rates).cancelled_by(self.cancellation);
+        let rates = RateOptions {
+            tolerance: TOLERANCE,
+            memory_limit_bytes: (self.options.memory_limit * 1e9) as u64,
+            ..RateOptions::default()
+        };
+        let mut solver = RateSolver::new(space.clone(), rates).cancelled_by(self.cancellation);
         let steady = solver.solve(&generator.matrix, &generator.escape, None)?;
         if !steady.info.converged {
-            return Err(RateError::Sensitivity.into());
+            return Ok(None);
         }
         let values = at_nodes(&space, &|states| self.tangent.stretching(states));
         let sum = |of: &dyn Fn(f64) -> f64, weights: &[f64]| -> f64 {
@@ -235,11 +249,12 @@ impl Angles<'_> {
             }
             false => 0.0,
         };
-        Ok(Stretching {
+        Ok(Some(Stretching {
             mean,
             size: sum(&f64::abs, &steady.mass),
             by_scheme,
-        })
+            escape: steady.info.escape_rate.abs(),
+        }))
     }
 
     fn assemble(
@@ -247,7 +262,8 @@ impl Angles<'_> {
         space: &CellSpace,
         dissipation: Dissipation,
     ) -> Result<Generator, MethodError> {
-        let (tangent, options) = (&self.tangent, &self.options);
+        let (tangent, scheme) = (&self.tangent, self.options.scheme);
+        let options = &GeneratorOptions { scheme };
         let assembled = match dissipation {
             Dissipation::Full => assemble(tangent, space, options),
             Dissipation::Half => assemble_damped(tangent, space, options, dissipation),
@@ -261,6 +277,28 @@ impl Angles<'_> {
         }
         Ok(generator)
     }
+}
+
+/// Few cells, on which harmonics are tried, and those on which the exponent is worked out.
+fn cells(space: &CellSpace) -> [Vec<Axis>; 2] {
+    let axes = space.axes();
+    let most = axes.iter().map(Axis::count).max().unwrap_or(COARSE) as f64;
+    let fine = most.min(FINER * COARSE as f64);
+    [fine / FINER, fine].map(|most| {
+        let fewer = |axis: &Axis| axis.refined((most / axis.count() as f64).min(1.0));
+        axes.iter().map(fewer).collect()
+    })
+}
+
+/// What the exponent takes at every value on these cells, with the harmonics that most oscillators do with; `None` where
+/// it is no more than a mean.
+pub(crate) fn cost_of_largest_exponent(
+    space: &CellSpace,
+    options: &GeneratorMethodOptions,
+) -> Option<GeneratorCost> {
+    let [_, fine] = cells(space);
+    let space = with_angle(&fine, USUAL).ok()?;
+    options.cost(&space).ok().filter(|_| fine.len() == 2)
 }
 
 /// Cells with so many harmonics of the angle.

@@ -5,10 +5,9 @@ use std::sync::Arc;
 use super::largest_exponent::Angles;
 use crate::cancellation::Cancellation;
 use crate::exponent::{Exponent, largest};
-use crate::generator::GeneratorOptions;
+use crate::method::GeneratorMethodOptions;
 use crate::sampling::{NormalStream, StreamKey};
 use crate::space::{Axis, CellSpace};
-use crate::stationary::generator::RateOptions;
 use crate::system::{Family, Interpretation, LANES, Lanes, Path, System, TypedModel};
 
 /// Equations of x and y, and pairs of an axis and the amplitude of a noise on it.
@@ -35,12 +34,12 @@ fn by_angles(typed: Typed<'_>, p: f64, ends: [f64; 2], cells: usize) -> Exponent
     let axes = ends.map(|end| Axis::uniform(-end, end, cells).unwrap());
     let angles = Angles {
         tangent,
-        rates: RateOptions::default(),
-        options: GeneratorOptions::default(),
+        options: &GeneratorMethodOptions::default(),
         cancellation: &Cancellation::new(),
     };
     angles
         .exponent(&CellSpace::new(axes.to_vec()).unwrap())
+        .unwrap()
         .unwrap()
 }
 

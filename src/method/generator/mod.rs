@@ -34,6 +34,7 @@ mod unknowns;
 
 pub(super) use coarse::rough_masses;
 pub use cost::GeneratorCost;
+pub(crate) use largest_exponent::cost_of_largest_exponent;
 pub(crate) use modes::{automatic_modes, change_by_more_modes};
 pub(crate) use one_axis::OneAxisFamily;
 pub use options::GeneratorMethodOptions;
