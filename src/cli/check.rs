@@ -7,7 +7,10 @@ use std::path::Path;
 
 use crate::continuation::evenly_spaced;
 use crate::exponent::of_family;
-use crate::method::{Cost, GeneratorCost, MonteCarloCost, SgcmCost, StepChoice};
+use crate::method::{
+    Cost, GeneratorCost, MethodOptions, MonteCarloCost, SgcmCost, StepChoice,
+    cost_of_largest_exponent,
+};
 use crate::run::fixed_point_in_words;
 use crate::stationary::generator::RateError;
 use crate::sweep_file::{MethodKind, Sweep, bytes_in_words, machine_memory};
@@ -185,6 +188,9 @@ fn points(spec: &Sweep) -> String {
 /// What is worked out of a fixed point, with the exponents at both ends.
 fn exponent(spec: &Sweep) -> Option<String> {
     let family = spec.problem.family();
+    if family.largest_exponent() {
+        return Some(along_density(spec));
+    }
     let state = fixed_point_in_words(family)?;
     let (from, to) = family.ends();
     let at = |value: f64| match of_family(family, value) {
@@ -197,6 +203,22 @@ fn exponent(spec: &Sweep) -> Option<String> {
         at(from),
         at(to)
     ))
+}
+
+/// What is worked out along the density, and what that takes.
+fn along_density(spec: &Sweep) -> String {
+    let words = "exponent: the largest Lyapunov exponent along the stationary density at every value, and its zeros as rows `DB`";
+    let MethodOptions::Generator(options) = spec.settings.method.chosen() else {
+        return words.to_owned();
+    };
+    match cost_of_largest_exponent(spec.problem.space(), &options) {
+        Some(cost) => format!(
+            "{words}; most values take about {:.0} s more on two cores for it, and {} of memory",
+            2.0 * cost.factorisation_seconds(),
+            bytes_in_words(spec.sessions() as f64 * cost.bytes)
+        ),
+        None => words.to_owned(),
+    }
 }
 
 /// What a user should know before the run.

@@ -115,9 +115,11 @@ impl Label {
                 of: one.asked.measure.clone(),
                 before: if one.rises { "< 0" } else { "> 0" }.to_owned(),
                 after: if one.rises { "> 0" } else { "< 0" }.to_owned(),
-                change: match one.rises {
-                    true => "D-bifurcation: the fixed point loses its stability",
-                    false => "D-bifurcation: the fixed point becomes stable",
+                change: match (family.fixed_point().is_some(), one.rises) {
+                    (true, true) => "D-bifurcation: the fixed point loses its stability",
+                    (true, false) => "D-bifurcation: the fixed point becomes stable",
+                    (false, true) => "D-bifurcation: paths under the same noise run apart",
+                    (false, false) => "D-bifurcation: paths under the same noise come together",
                 }
                 .to_owned(),
                 method: "exponent",

@@ -129,8 +129,8 @@ impl Root {
     }
 }
 
-/// The levels of which the crossings are wanted: those that are asked for, and zero for the numbers that say how
-/// a spectrum changes.
+/// The levels of which the crossings are wanted: those that are asked for, and zero for the exponent along the density
+/// and for the numbers that say how a spectrum changes.
 pub(super) fn asked_of(family: &Family) -> Vec<MeasureLevel> {
     let question = family.spectrum().into_iter();
     let powers = question.flat_map(|question| {
@@ -143,8 +143,16 @@ pub(super) fn asked_of(family: &Family) -> Vec<MeasureLevel> {
             })
         })
     });
+    let exponent = family.largest_exponent().then(|| MeasureLevel {
+        measure: EXPONENT.word.to_owned(),
+        level: 0.0,
+    });
     let mut all = family.levels().to_vec();
-    let new: Vec<MeasureLevel> = powers.filter(|one| !all.contains(one)).collect();
+    let new: Vec<MeasureLevel> = exponent
+        .into_iter()
+        .chain(powers)
+        .filter(|one| !all.contains(one))
+        .collect();
     all.extend(new);
     all
 }

@@ -69,8 +69,11 @@ pub(super) fn label_points(
     let rows = rows.into_iter();
     let rows = rows.map(|row| Label::Bifurcation(Box::new(row)));
     let levels = crossings(points, &asked_of(&subject.family), options.tolerance);
-    // Where the exponent passes zero is known better from the exponent itself, and asked for with it.
-    let levels = levels.into_iter().filter(|row| !row.is_d_bifurcation());
+    // Where the exponent of a fixed point passes zero is known better from itself, and asked for with it.
+    let is_of_point = subject.family.fixed_point().is_some();
+    let levels = levels
+        .into_iter()
+        .filter(|row| !(is_of_point && row.is_d_bifurcation()));
     let levels = levels.chain(d_bifurcations(points, &subject.family, options.tolerance));
     let levels = levels.map(|row| Label::Level(Box::new(row)));
     let others = label::end_points(points).chain(label::failures(points));

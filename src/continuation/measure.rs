@@ -105,7 +105,12 @@ pub(crate) const PASSAGE_RATE: MeasureKind = of_passage(
 pub(crate) const EXPONENT: MeasureKind = kind(
     "exponent",
     "1/t",
-    "largest Lyapunov exponent of a fixed point that multiplicative noise leaves alone",
+    "largest Lyapunov exponent, of a fixed point that multiplicative noise leaves alone or along the stationary density",
+);
+pub(crate) const DIVERGENCE: MeasureKind = kind(
+    "divergence",
+    "1/t",
+    "sum of all Lyapunov exponents along the stationary density: mean divergence of drift and noise",
 );
 pub(crate) const VELOCITY: MeasureKind =
     kind("velocity", "{}/t", "mean rate at which an angle turns");

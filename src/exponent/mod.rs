@@ -14,7 +14,7 @@ mod waves;
 use crate::system::{Family, FixedPointFault, Linearised};
 
 /// A Lyapunov exponent with its error, in 1/t.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Exponent {
     /// The exponent.
     pub value: f64,

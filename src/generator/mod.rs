@@ -14,6 +14,7 @@
 //! | fluxes along a grid line: fitted and advected drift | `line.rs`, `smooth.rs` |
 //! | rates along an axis of modes | `modes.rs` |
 //! | the matrix | `assemble.rs`, `columns.rs` |
+//! | a noise that moves an axis and an angle at once | `shared_noise.rs` |
 //! | the matrix of a process that ends in a region | `absorbing.rs` |
 //! | masses of cells and moments from the unknowns | `masses.rs` |
 //! | one axis: the steady state by quadrature, its extrema from the equations | `one_axis/` |
@@ -38,6 +39,7 @@ mod one_axis;
 mod resolution;
 mod sampler;
 mod scheme;
+mod shared_noise;
 mod smooth;
 
 pub(crate) use absorbing::levels;
@@ -51,6 +53,7 @@ pub(crate) use one_axis::exponent_at;
 pub use one_axis::{End, OneAxis, one_axis, profile};
 pub(crate) use resolution::{Resolution, resolution};
 pub use scheme::{AdvectiveScheme, Dissipation};
+pub(crate) use shared_noise::{add_shared_noise, at_nodes};
 
 use sprs::CsMat;
 

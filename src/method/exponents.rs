@@ -3,20 +3,25 @@
 //! Below its D-bifurcation the fixed point attracts almost every path beside it, and what noise brings there stays: no
 //! cells hold such a steady state, so that none is looked for.
 
-use crate::continuation::measure::EXPONENT;
+use crate::continuation::measure::{DIVERGENCE, EXPONENT};
 use crate::continuation::{
-    Finding, Measure, MeasureColumn, PointStatus, Session, Solution, SolveReport, SourceError,
+    Finding, Measure, MeasureColumn, MeasureKind, PointStatus, Session, Solution, SolveReport,
+    SourceError,
 };
 use crate::exponent::{Exponent, ExponentError, of_family};
 use crate::system::{Family, FixedPointFault};
 
-/// The column of the exponent, where a family asks for it.
+/// The columns of exponents, where a family asks for them.
 pub(super) fn exponent_columns(family: &Family) -> impl Iterator<Item = MeasureColumn> {
-    let column = MeasureColumn {
-        kind: EXPONENT,
-        of: String::new(),
+    let wanted: &[MeasureKind] = match (family.fixed_point(), family.largest_exponent()) {
+        (Some(_), _) => &[EXPONENT],
+        (None, true) => &[EXPONENT, DIVERGENCE],
+        (None, false) => &[],
     };
-    family.fixed_point().map(|_| column).into_iter()
+    wanted.iter().map(|&kind| MeasureColumn {
+        kind,
+        of: String::new(),
+    })
 }
 
 /// A session whose reports have the exponent.

@@ -48,7 +48,8 @@ pub(crate) use cost::Cost;
 pub(crate) use generator::GeneratorCost;
 pub use generator::{GeneratorMethodOptions, GeneratorSource};
 pub(crate) use generator::{
-    OneAxisFamily, automatic_modes, change_by_more_modes, highest_frequency,
+    OneAxisFamily, automatic_modes, change_by_more_modes, cost_of_largest_exponent,
+    highest_frequency,
 };
 pub use measures::DerivedMeasure;
 #[cfg(feature = "store")]

@@ -234,10 +234,12 @@ fn solve_in_words(family: &Family, finding: &Finding) -> String {
             fixed_point(family),
             family.axis(axis)
         ),
-        Finding::NoExponent => format!(
-            "no Lyapunov exponent: drift or noise has no derivative at {}",
-            fixed_point(family)
-        ),
+        Finding::NoExponent => match fixed_point_in_words(family) {
+            Some(point) => {
+                format!("no Lyapunov exponent: drift or noise has no derivative at {point}")
+            }
+            None => "no Lyapunov exponent: the density of state and angle could not be solved for".to_owned(),
+        },
         Finding::Told(ref text) => text.clone(),
         // The others are worded above.
         _ => finding.kind().0.to_owned(),

@@ -177,16 +177,19 @@ pub(super) struct CurveDraft {
 pub(super) enum ExponentKind {
     /// Of a fixed point that neither drift nor noise moves.
     FixedPoint,
+    /// Along the stationary density.
+    Largest,
 }
 
 impl ExponentKind {
     /// All of them.
-    pub(super) const ALL: [Self; 1] = [Self::FixedPoint];
+    pub(super) const ALL: [Self; 2] = [Self::FixedPoint, Self::Largest];
 
     /// Name used in files.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::FixedPoint => "fixed-point",
+            Self::Largest => "largest",
         }
     }
 }

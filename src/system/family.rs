@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::{
-    AtPhase, FixedPointFault, Linearised, MeasureLevel, Model, ParameterValues, PassageQuestion,
-    Path, Quantity, Region, SpectrumQuestion, System, SystemError,
+    AtPhase, FixedPointFault, Linearised, MeasureLevel, Model, NoiseKind, ParameterValues,
+    PassageQuestion, Path, Quantity, Region, SpectrumQuestion, System, SystemError, Tangent,
+    TangentFault,
 };
 
 /// Systems along a path: one number in, a bound system out, with names and symbols for tables and figures.
@@ -33,6 +34,7 @@ pub struct Family {
     passages: Vec<PassageQuestion>,
     levels: Vec<MeasureLevel>,
     fixed_point: Option<Vec<f64>>,
+    largest_exponent: bool,
     slow_modes: usize,
     spectrum: Option<Arc<SpectrumQuestion>>,
 }
@@ -64,6 +66,7 @@ impl Family {
             passages: Vec::new(),
             levels: Vec::new(),
             fixed_point: None,
+            largest_exponent: false,
             slow_modes: 0,
             spectrum: None,
         };
@@ -130,6 +133,46 @@ impl Family {
         formulas.linearised(values.as_slice(), state)
     }
 
+    /// The family with the wish for the largest Lyapunov exponent along the stationary density.
+    #[must_use]
+    pub fn with_largest_exponent(mut self, wanted: bool) -> Self {
+        self.largest_exponent = wanted;
+        self
+    }
+
+    /// Whether the largest Lyapunov exponent along the stationary density is wanted.
+    pub fn largest_exponent(&self) -> bool {
+        self.largest_exponent
+    }
+
+    /// Why there is no such exponent at a coordinate of the path; `None` where there is one.
+    pub(crate) fn tangent_fault(&self, coordinate: f64) -> Option<TangentFault> {
+        let formulas = self.model.formulas();
+        let Some(formulas) = formulas.filter(|_| self.model.noise_kind() == NoiseKind::White)
+        else {
+            return Some(TangentFault::NoFormulas);
+        };
+        let system = self.at(coordinate).ok()?;
+        formulas.tangent_fault(system.facts())
+    }
+
+    /// A system of the path at a coordinate with the angle of small deviations from its paths; `scales` are lengths
+    /// along the axes that count as equal.
+    ///
+    /// # Errors
+    /// [`TangentFault`].
+    pub(crate) fn tangent(
+        &self,
+        coordinate: f64,
+        system: &Arc<dyn System>,
+        scales: &[f64],
+    ) -> Result<Tangent, TangentFault> {
+        let values = self.values_at(coordinate);
+        let values = values.map_err(|_| TangentFault::NoFormulas)?;
+        let formulas = self.model.formulas().ok_or(TangentFault::NoFormulas)?;
+        formulas.tangent(system.clone(), values.as_slice(), scales)
+    }
+
     /// The levels of measures of which the crossings are wanted.
     pub fn levels(&self) -> &[MeasureLevel] {
         &self.levels
@@ -185,6 +228,7 @@ impl Family {
             passages: self.passages.clone(),
             levels: self.levels.clone(),
             fixed_point: self.fixed_point.clone(),
+            largest_exponent: self.largest_exponent,
             slow_modes: self.slow_modes,
             spectrum: self.spectrum.clone(),
             ..Self::new(self.model.clone(), fixed, path)?

@@ -44,6 +44,7 @@ mod region;
 pub mod registry;
 mod spectrum;
 mod symmetry;
+mod tangent;
 #[cfg(test)]
 pub(crate) mod test_families;
 mod typed;
@@ -67,6 +68,8 @@ pub use quantity::{AtPhase, BoundQuantity, Quantity, QuantityError, QuantityFaul
 pub use region::{Region, RegionError, RegionFault, regions};
 pub use spectrum::{Band, Fluctuating, Sides, SpectrumQuestion};
 pub(crate) use symmetry::{proved_symmetry, symmetry_over_a_period};
+pub use tangent::TangentFault;
+pub(crate) use tangent::{HALF_TURN, Tangent};
 pub(crate) use typed::FormulaHazard;
 pub use typed::{
     CompiledDrift, FormulaPlace, Interpretation, PeriodFault, TypedEquations, TypedModel,

@@ -114,7 +114,7 @@ fn what_has_no_exponent_is_refused_with_its_place_and_a_remedy() {
             "x = 1, y = 0 is no fixed point at b = -0.1: along y the drift is -2",
         ),
         ("exponent.at.z=0", "`z` is no coordinate of the state"),
-        ("exponent.kind=largest", "cannot be `largest`"),
+        ("exponent.kind=all", "cannot be `all`"),
         ("system.noise.y=0.1", "the amplitude of the noise 0.1"),
         (
             "system.equations.y=-x+b*y-sign(y)",
@@ -145,4 +145,105 @@ fn what_has_no_exponent_is_refused_with_its_place_and_a_remedy() {
         "sweep c.toml",
         &["one axis and of two; this system has 3", "c.toml:"],
     );
+}
+
+/// Overdamped motion in two wells; the exponent is the mean of 1 - 3x², exactly.
+const WELLS: &str = r#"[system.equations]
+x = "a x - x^3"
+[system.noise]
+x = "0.7"
+[system.parameters]
+[sweep]
+parameter = "a"
+from = -1.0
+to = 1.0
+points = 5
+[cells]
+x = { from = -3.0, to = 3.0, count = 120 }
+[exponent]
+kind = "largest"
+[levels]
+exponent = -1.5
+[figures]
+draw = []
+"#;
+
+#[test]
+fn along_the_density_of_one_axis_the_exponent_is_a_mean_and_a_level_like_any_other() {
+    let room = Room::new();
+    room.write("a.toml", WELLS);
+    assert_says(
+        &room.done("check a.toml").out,
+        &["kind = \"largest\"", "along the stationary density"],
+    );
+    room.done("sweep a.toml --out run");
+    for row in &room.table("run/points.csv").0 {
+        let names = ["a", "exponent", "exponent_error", "divergence"];
+        let [a, exponent, error, divergence] = row.numbers(names);
+        let density = |x: f64| ((a * x * x - 0.5 * x.powi(4)) / 0.49).exp();
+        let mean = |of: &dyn Fn(f64) -> f64| {
+            let places = (-4000..=4000).map(|step| f64::from(step) * 1e-3);
+            let sum = |of: &dyn Fn(f64) -> f64| -> f64 {
+                places.clone().map(|x| of(x) * density(x)).sum()
+            };
+            sum(of) / sum(&|_| 1.0)
+        };
+        let exact = mean(&|x| a - 3.0 * x * x);
+        assert!(
+            (exponent - exact).abs() <= error + 1e-9,
+            "{exponent} {exact}"
+        );
+        assert!(error < 1e-5, "{error}");
+        // By parts it is -2 E[f²]/σ²: below zero whatever the wells are.
+        let other = -2.0 / 0.49 * mean(&|x| (a * x - x.powi(3)).powi(2));
+        assert!((exact - other).abs() < 1e-9);
+        assert_eq!(exponent, divergence);
+    }
+    let table = room.table("run/bifurcations.csv");
+    let is_level = |label: &str| label.starts_with("LV");
+    assert!(table.0.iter().any(|row| is_level(&row["label"])));
+    assert!(table.0.iter().all(|row| !row["label"].starts_with("DB")));
+}
+
+#[test]
+fn along_a_density_linear_equations_are_exact_and_their_box_and_cells_do_not_matter() {
+    let room = Room::new();
+    let file = OSCILLATOR.replace("fixed-point", "largest");
+    let file = file.replace("-x + b y - x^3 - x^2 y", "-x - b y");
+    let file = file.replace("measures_exponent", "measures_divergence");
+    let file = file.replace("s x", "s").replace("-0.1", "0.5");
+    room.write("a.toml", file.replace("to = 0.1", "to = 4.5"));
+    room.done("sweep a.toml --out run cells.y.count=24 cells.x.count=24");
+    for row in &room.table("run/points.csv").0 {
+        let [b, exponent, divergence] = row.numbers(["b", "exponent", "divergence"]);
+        // The eigenvalues of x'' + b x' + x = 0, and their sum.
+        let beyond = (0.25 * b * b - 1.0).max(0.0).sqrt();
+        assert!((exponent - (beyond - 0.5 * b)).abs() < 1e-13);
+        assert!((divergence + b).abs() < 1e-11);
+    }
+}
+
+#[test]
+fn what_has_no_exponent_along_its_density_is_refused_with_a_remedy() {
+    let room = Room::new();
+    let file = OSCILLATOR.replace("fixed-point", "largest");
+    room.write("a.toml", file.replace("s x", "s"));
+    for (set, words) in [
+        (
+            "system.equations.y=-x+b*y-x^3-sign(y)",
+            "is not smooth everywhere",
+        ),
+        ("exponent.at.x=0", "names a fixed point"),
+        ("method.kind=monte-carlo", "by the generator alone"),
+        (
+            "system.noise.kind=ornstein-uhlenbeck system.parameters.tau=1",
+            "formulas with white noise",
+        ),
+        (
+            "system.equations.y=-x-y+cos(b*t)",
+            "without angles and forcing",
+        ),
+    ] {
+        room.refused(&format!("sweep a.toml {set}"), &[words, "a.toml:"]);
+    }
 }

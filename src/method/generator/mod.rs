@@ -7,6 +7,10 @@ mod coarse;
 mod cost;
 mod forcing;
 mod jumps;
+mod largest_exponent;
+#[cfg(test)]
+#[allow(clippy::print_stdout)]
+mod largest_exponent_tests;
 #[cfg(feature = "serde")]
 mod memory;
 mod modes;
@@ -31,6 +35,7 @@ mod unknowns;
 
 pub(super) use coarse::rough_masses;
 pub(crate) use cost::GeneratorCost;
+pub(crate) use largest_exponent::cost_of_largest_exponent;
 pub(crate) use modes::{automatic_modes, change_by_more_modes};
 pub(crate) use one_axis::OneAxisFamily;
 pub use options::GeneratorMethodOptions;

@@ -11,6 +11,7 @@ use std::sync::Arc;
 use super::GeneratorSource;
 use super::coarse::{COARSE, Coarseness, rough_relaxation};
 use super::forcing::Forced;
+use super::largest_exponent::add_largest_exponent;
 use super::one_axis;
 use super::passages::{add_passages, at_nodes};
 use super::relaxation::Relaxation;
@@ -153,9 +154,10 @@ impl GeneratorSession {
         let (problem, options) = (&self.source.problem, &self.source.options);
         let (asked, cancellation) = ((problem, value), &self.cancellation);
         add_passages(report, asked, system, density, options, cancellation)?;
+        let at = (system, value);
+        add_largest_exponent(report, &self.source, at, known, cancellation)?;
         let unknowns = known.map(|(unknowns, _)| unknowns);
         add_slow_modes(report, &self.source, system, unknowns, cancellation)?;
-        let at = (system, value);
         add_spectra(report, &self.source, at, unknowns, cancellation)
     }
 

@@ -234,7 +234,8 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "A level of a column of `points.csv` that has an error, such as `exit_mean = 1000`: the values of the parameter at which it is crossed are rows `LV` of the table."),
     key("exponent.kind", Kind::Choice(ExponentKind::words), Rule("no exponent"), optional!(exponent),
         "`fixed-point`: the largest Lyapunov exponent of a fixed point that multiplicative noise leaves alone, at every value, and the values at \
-         which it passes zero as rows `DB` (docs/exponents.md). On one axis or two."),
+         which it passes zero as rows `DB` (docs/exponents.md). On one axis or two. \
+         `largest`: that along the stationary density of a smooth system, with its rows `DB` and the mean divergence; by the generator."),
     key("exponent.at.<axis>", Kind::Number(ANY), Rule("0"),
         Field {
             get: |draft, name| draft.fixed_point.iter().find(|(known, _)| known == name).map(|(_, value)| value.to_plain()),
@@ -243,7 +244,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
                 draft.fixed_point.push((name.to_owned(), value));
             },
         },
-        "Coordinate of the fixed point: drift and all noises must be zero there, along the whole sweep."),
+        "Coordinate of the fixed point (`fixed-point`): drift and all noises must be zero there, along the whole sweep."),
     key("relaxation.modes", Kind::Integer(1, 24), Rule("none"), optional!(slow_modes),
         "Slow modes, the deviations from the steady state that live longest: as many decay rates and frequencies are told in `points.csv`, with errors (docs/relaxation.md)."),
     key("spectrum.of", Kind::List(&Kind::Text), Rule("no spectra"), optional!(spectrum.of),

@@ -51,7 +51,10 @@ impl Settings {
             regions: self.regions_draft(),
             levels: self.levels_draft(),
             passages: self.passages_draft(),
-            exponent: (self.family.fixed_point()).map(|_| ExponentKind::FixedPoint),
+            exponent: match self.family.fixed_point() {
+                Some(_) => Some(ExponentKind::FixedPoint),
+                None => (self.family.largest_exponent()).then_some(ExponentKind::Largest),
+            },
             fixed_point: self.fixed_point_draft(),
             slow_modes: Some(self.family.slow_modes()).filter(|&wanted| wanted > 0),
             spectrum: super::spectrum::draft(&self.family),

@@ -1,18 +1,63 @@
-//! The fixed point of which a file wants the largest Lyapunov exponent, held against the equations.
+//! What a file wants the largest Lyapunov exponent of, a fixed point or all of the stationary density, held against the
+//! equations.
 
 use crate::exponent::{ExponentError, largest};
 use crate::sweep_file::diagnostic::Diagnostic;
-use crate::sweep_file::draft::Draft;
+use crate::sweep_file::draft::{Draft, ExponentKind, MethodKind};
 use crate::sweep_file::names::quotable;
 use crate::sweep_file::reader::Reader;
-use crate::system::{Family, FixedPointFault, NoiseKind};
+use crate::system::{Family, FixedPointFault, NoiseKind, TangentFault};
 
 /// What to do where a state is moved.
 const FIXED: &str = "give under `exponent.at` a state at which the drift and every noise are zero all along the sweep, or leave `[exponent]` out";
 
-/// Checks `[exponent]`: the state is named by axes of the system, and neither drift nor noise moves it at either end
+/// Reads `[exponent]` into what a family is asked for.
+pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, family: Family) -> Family {
+    if draft.exponent == Some(ExponentKind::Largest) {
+        let wanted = is_along_density(reader, draft, &family);
+        return family.with_largest_exponent(wanted);
+    }
+    let state = fixed_point(reader, draft, &family);
+    family.with_fixed_point(state)
+}
+
+/// Whether the exponent along the density can be worked out; what speaks against it is reported.
+fn is_along_density(reader: &mut Reader<'_>, draft: &Draft, family: &Family) -> bool {
+    let (from, _) = family.ends();
+    let (words, remedy) = if !draft.fixed_point.is_empty() {
+        (
+            "`exponent.at` names a fixed point, and the largest exponent is wanted along the density".to_owned(),
+            "leave `at` out, or write `kind = \"fixed-point\"`",
+        )
+    } else if draft.method.kind != MethodKind::Generator {
+        (
+            "the largest Lyapunov exponent along a density is worked out by the generator alone"
+                .to_owned(),
+            "write `method.kind = \"generator\"`, or leave `[exponent]` out",
+        )
+    } else {
+        let Some(fault) = family.tangent_fault(from) else {
+            return true;
+        };
+        let remedy = match fault {
+            TangentFault::Rough => {
+                "smooth it (`v/sqrt(v^2 + e^2)` for `sign(v)`, `sqrt(v^2 + e^2)` for `abs(v)`), or leave `[exponent]` out"
+            }
+            _ => "leave `[exponent]` out",
+        };
+        (fault.to_string(), remedy)
+    };
+    let diagnostic = Diagnostic::new(words).remedy(remedy);
+    reader.report(match reader.place(&["exponent", "kind"]) {
+        Some(place) => diagnostic.at(place, "this exponent"),
+        None => diagnostic,
+    });
+    false
+}
+
+/// Checks the state of `[exponent]`: it is named by axes of the system, and neither drift nor noise moves it at either end
 /// of the sweep or in its middle.
-pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, family: &Family) -> Option<Vec<f64>> {
+fn fixed_point(reader: &mut Reader<'_>, draft: &Draft, family: &Family) -> Option<Vec<f64>> {
     let model = family.model();
     let is_axis = |name: &str| model.axes.iter().any(|axis| axis.name == name);
     let mut is_known = true;

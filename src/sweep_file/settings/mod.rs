@@ -129,8 +129,7 @@ impl Settings {
         swept.family = family.with_averaged(watched.averaged);
         let (regions, questions) = passages::read(&mut reader, &draft, swept.family.model());
         swept.family = swept.family.with_passages(regions, questions);
-        let fixed_point = exponent::read(&mut reader, &draft, &swept.family);
-        swept.family = swept.family.with_fixed_point(fixed_point);
+        swept.family = exponent::read(&mut reader, &draft, swept.family);
         swept.family = relaxation::read(&mut reader, &draft, swept.family);
         let question = spectrum::read(&mut reader, &draft, &swept.family);
         swept.family = swept.family.with_spectrum(question);

@@ -15,6 +15,7 @@ mod linear;
 mod read;
 mod relaxation;
 pub(super) mod statement;
+mod tangent;
 
 use std::sync::Arc;
 
