@@ -63,7 +63,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("system.define.<name>", Kind::Formula, Rule("nothing"), formulas!(define),
         "A formula that others may use by this name."),
     key("system.bounds.<axis>", Kind::Bounds, Rule("none"), BOUNDS,
-        "Lower and upper value that an axis never leaves, as formulas of parameters; or `periodic` for an angle, which comes back after 2π (docs/angles.md)."),
+        "Lower and upper value that an axis never leaves, as formulas of parameters; or `periodic` for an angle, which comes back after 2π (docs/angles.md); or `reflecting`, for both ends of its cells or as `[\"reflecting\", \"open\"]` for one: a wall there, at which noise and drift turn back (docs/formulas.md)."),
     key("system.bounds.<axis>.period", Kind::Number(POSITIVE), Rule("2π for an axis that is `periodic`"), PERIOD,
         "Period of an angle that is not measured in radians: `theta = { period = 1.0 }`."),
     key("system.parameters.<parameter>", Kind::Number(ANY), Rule("the model's default, where it has one"),
