@@ -45,7 +45,7 @@ pub use absorbing::{AbsorbingGenerator, Closure, assemble_absorbing};
 pub use assemble::{assemble, assemble_damped};
 pub use derivative::assemble_derivative;
 pub use grading::automatic_grading;
-pub use masses::{cell_masses, unknown_moments};
+pub use masses::{cell_masses, summed_to_walls, unknown_moments};
 pub use one_axis::{End, OneAxis, exponent_at, one_axis, profile};
 pub(crate) use resolution::{Resolution, resolution};
 pub use scheme::{AdvectiveScheme, Dissipation};
