@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::{
-    AtPhase, Enclosed, FixedPointFault, Linearised, MeasureLevel, Model, ParameterValues, PassageQuestion,
-    Path, Quantity, Region, SpectrumQuestion, System, SystemError,
+    AtPhase, Enclosed, FixedPointFault, Linearised, MeasureLevel, Model, ParameterValues,
+    PassageQuestion, Path, Quantity, Region, SpectrumQuestion, System, SystemError,
 };
 
 /// Systems along a path: one number in, a bound system out, with names and symbols for tables and figures.

@@ -21,8 +21,7 @@ fn sweep(system: &str, rest: &str) -> Sweep {
 
 /// The measures at D = 1/2 by the generator, and the watched densities as cell masses. No wall is told as an end.
 fn solved(sweep: &Sweep) -> (Vec<Measure>, Vec<Vec<f64>>) {
-    let source =
-        GeneratorSource::new(&sweep.problem, &GeneratorMethodOptions::default()).unwrap();
+    let source = GeneratorSource::new(&sweep.problem, &GeneratorMethodOptions::default()).unwrap();
     let mut session = source.open(&Cancellation::new());
     let solution = session.solve(0.5).unwrap();
     let findings = &solution.report.findings;
@@ -37,8 +36,14 @@ fn holds(measures: &[Measure], name: &str, exact: f64, largest: f64) {
     let found = measures.iter().find(|one| one.name == name);
     let found = found.unwrap_or_else(|| panic!("{name}"));
     let (value, error) = (found.value, found.error.unwrap());
-    println!("{name}: {value:.9} ± {error:.1e}, exactly {exact:.9}, off by {:.1e}", value - exact);
-    assert!((value - exact).abs() <= error, "{name}: {value} ± {error}, exactly {exact}");
+    println!(
+        "{name}: {value:.9} ± {error:.1e}, exactly {exact:.9}, off by {:.1e}",
+        value - exact
+    );
+    assert!(
+        (value - exact).abs() <= error,
+        "{name}: {value} ± {error}, exactly {exact}"
+    );
     assert!(error <= largest * exact.abs(), "{name}: {value} ± {error}");
 }
 
@@ -106,7 +111,10 @@ fn ornstein_uhlenbeck_on_a_half_plane_is_half_of_a_normal_density() {
         let edges = sweep.problem.space().axes()[0].edges();
         let exact = |ends: &[f64]| (erf(ends[1]) - erf(ends[0])) / (1.0 - erf(0.0));
         let off = masses[0].iter().zip(edges.windows(2));
-        let off: f64 = 0.5 * off.map(|(mass, ends)| (mass - exact(ends)).abs()).sum::<f64>();
+        let off: f64 = 0.5
+            * off
+                .map(|(mass, ends)| (mass - exact(ends)).abs())
+                .sum::<f64>();
         println!("p(x) is off by {off:.1e} in total variation");
         assert!(off < largest);
     }
@@ -125,13 +133,16 @@ y = "sqrt(2 D)"
 x = "reflecting"
 y = "reflecting"
 "#;
-    let cells = "[cells]\nx = { from = 0, to = 2, count = 40 }\ny = { from = 0, to = 1.5, count = 40 }\n";
+    let cells =
+        "[cells]\nx = { from = 0, to = 2, count = 40 }\ny = { from = 0, to = 1.5, count = 40 }\n";
     let (measures, _) = solved(&sweep(system, cells));
     let moment = |weight: &dyn Fn(f64) -> f64, to: f64, power: i32| {
         let n = 20_000;
         let h = to / f64::from(n);
         let at = |k: i32| (f64::from(k) + 0.5) * h;
-        (0..n).map(|k| h * weight(at(k)) * at(k).powi(power)).sum::<f64>()
+        (0..n)
+            .map(|k| h * weight(at(k)) * at(k).powi(power))
+            .sum::<f64>()
     };
     let exact = |weight: &dyn Fn(f64) -> f64, to: f64| {
         let [zeroth, first, second] = [0, 1, 2].map(|power| moment(weight, to, power));
@@ -167,19 +178,35 @@ x = "reflecting"
 "#;
     let rest = "[cells]\nx = { from = 0, to = 2, count = 100 }\n[relaxation]\nmodes = 1\n";
     let (measures, _) = solved(&sweep(system, rest));
-    holds(&measures, "decay_rate_1", 0.5 * (PI / 2.0).powi(2) + 0.5, 1e-2);
+    holds(
+        &measures,
+        "decay_rate_1",
+        0.5 * (PI / 2.0).powi(2) + 0.5,
+        1e-2,
+    );
 }
 
 #[test]
 fn sampled_paths_turn_back_at_walls() {
-    let cells = "[cells]\nx = { from = 0, to = 5, count = 40 }\ny = { from = -4, to = 6, count = 40 }\n";
-    let sampled = sweep(HALF_PLANE, &format!("{cells}[method]\nkind = \"monte-carlo\"\ntime_step = 0.01\n"));
-    let options = MonteCarloOptions { time_step: pbif::method::StepChoice::Fixed(0.01), ..MonteCarloOptions::default() };
+    let cells =
+        "[cells]\nx = { from = 0, to = 5, count = 40 }\ny = { from = -4, to = 6, count = 40 }\n";
+    let sampled = sweep(
+        HALF_PLANE,
+        &format!("{cells}[method]\nkind = \"monte-carlo\"\ntime_step = 0.01\n"),
+    );
+    let options = MonteCarloOptions {
+        time_step: pbif::method::StepChoice::Fixed(0.01),
+        ..MonteCarloOptions::default()
+    };
     let never = Cancellation::new();
     let source = MonteCarloSource::new(&sampled.problem, &options, &never).unwrap();
     let found = source.open(&never).solve(0.5).unwrap().report;
     let (mean, deviation) = half_normal(0.3, 0.5);
-    for (name, exact) in [("mean_x", mean), ("sd_x", deviation), ("mean_y", 0.5 * mean)] {
+    for (name, exact) in [
+        ("mean_x", mean),
+        ("sd_x", deviation),
+        ("mean_y", 0.5 * mean),
+    ] {
         let one = found.measures.iter().find(|one| one.name == name).unwrap();
         let error = one.error.unwrap();
         println!("{name}: {} ± {error}, exactly {exact}", one.value);

@@ -346,9 +346,7 @@ pub(super) const BOUNDS: Field = Field {
         let ends = ends.map(|(_, ends)| {
             Plain::List(ends.map(|end| Plain::Text(end.name().to_owned())).into())
         });
-        formulas_of(&draft.equations.bounds, name)
-            .or(ends)
-            .or(word)
+        formulas_of(&draft.equations.bounds, name).or(ends).or(word)
     },
     set: |draft, name, plain| match (ends_of(plain), plain.text()) {
         (Some(ends), _) => {

@@ -72,14 +72,16 @@ fn fault(
         ));
     }
     if range.is_none() {
-        let title = format!("the wall of `{name}` stands where its cells end, and that is not said");
+        let title =
+            format!("the wall of `{name}` stands where its cells end, and that is not said");
         return Some(Diagnostic::new(title).remedy(format!("give `cells.{name}.from` and `to`")));
     }
     if draft.method.kind == MethodKind::Sgcm {
         let title = format!("`sgcm` knows no walls that reflect, as `{name}` has one");
-        return Some(Diagnostic::new(title).remedy(
-            "set `method.kind = \"generator\"`, or `\"monte-carlo\"`",
-        ));
+        return Some(
+            Diagnostic::new(title)
+                .remedy("set `method.kind = \"generator\"`, or `\"monte-carlo\"`"),
+        );
     }
     None
 }
