@@ -240,6 +240,8 @@ pub(super) struct PassageDraft {
     pub(super) from: Option<String>,
     pub(super) to: Option<String>,
     pub(super) until: Option<String>,
+    /// Several regions, each of which ends the passage; in place of `until`.
+    pub(super) exits: Option<Vec<String>>,
     /// Axes and coordinates.
     pub(super) start: Vec<(String, f64)>,
     pub(super) times: Option<Vec<f64>>,

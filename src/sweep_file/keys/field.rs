@@ -394,6 +394,22 @@ macro_rules! of_bins {
     };
 }
 
+/// What ends a passage: one region, or several.
+pub(super) const UNTIL: Field = Field {
+    get: |draft, name| {
+        let passage = draft.passage(name)?;
+        let several = passage.exits.as_ref().map(Formulas::written);
+        several.or(passage.until.as_ref().map(Formulas::written))
+    },
+    set: |draft, name, plain| {
+        let passage = draft.passage_mut(name);
+        match plain.items() {
+            Some(_) => passage.exits = Vec::read(plain),
+            None => passage.until = plain.text().map(str::to_owned),
+        }
+    },
+};
+
 /// A field of a passage.
 macro_rules! of_passage {
     ($field:ident) => {

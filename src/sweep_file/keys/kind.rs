@@ -95,6 +95,8 @@ pub(in crate::sweep_file) enum Kind {
     Formulas,
     /// Two formulas, or what happens at both ends, or the word for an angle.
     Bounds,
+    /// A string, or a list of some.
+    Regions,
     /// A list of values of one kind.
     List(&'static Self),
 }
@@ -125,6 +127,9 @@ impl Kind {
                 "a formula, such as `\"sqrt(2 D)\"`, or a list of formulas".to_owned()
             }
             Self::Bounds => "two formulas, such as `[\"-a\", \"a\"]`, or `\"periodic\"`, or `\"reflecting\"`, or `[\"reflecting\", \"open\"]`".to_owned(),
+            Self::Regions => {
+                "a string, such as `\"abs(x) > 2\"`, or a list of strings".to_owned()
+            }
             Self::List(Self::Number(condition)) => {
                 let words = condition.words;
                 format!("a list of finite numbers{words}, such as `[0.25, 0.5]`")
@@ -175,6 +180,10 @@ impl Kind {
                     items.len() == 2 && items.iter().all(|item| Self::Formula.holds(item))
                 }
                 None => plain.text() == Some(PERIODIC) || ends_of(plain).is_some(),
+            },
+            Self::Regions => match plain.items() {
+                Some(items) => !items.is_empty() && items.iter().all(|item| item.text().is_some()),
+                None => plain.text().is_some(),
             },
             Self::List(kind) => plain
                 .items()

@@ -1,8 +1,8 @@
 //! Every key of a sweep file, declared once: path, kind of value, default, meaning, and where the value lives.
 
 use super::field::{
-    BOUNDS, Field, InFile, Named, PERIOD, SWITCH, always, formulas, of_axis, of_bins, of_methods,
-    of_passage, optional,
+    BOUNDS, Field, InFile, Named, PERIOD, SWITCH, UNTIL, always, formulas, of_axis, of_bins,
+    of_methods, of_passage, optional,
 };
 use super::kind::{
     ANY, DPI, Kind, LINE, NOT_NEGATIVE, OPEN_UNIT, POSITIVE, SHARE, STEP, TEXT, UP_TO_ONE,
@@ -213,8 +213,8 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
             },
         },
         "A state in which a passage starts: a coordinate for every axis."),
-    key("passage.<passage>.until", Kind::Text, Rule("`to`"), of_passage!(until),
-        "The region at whose border a passage ends: a name, or an inequality such as `abs(x) > 2`. How long that takes is told in `points.csv`, with errors (docs/passage.md)."),
+    key("passage.<passage>.until", Kind::Regions, Rule("`to`"), UNTIL,
+        "The region at whose border a passage ends: a name, or an inequality such as `abs(x) > 2`. How long that takes is told in `points.csv`, with errors (docs/passage.md). Of several, `[\"x > 2\", \"x < -2\"]`, any ends it, and the share of each is told."),
     key("passage.<passage>.to", Kind::Text, Rule("`until`"), of_passage!(to),
         "Another word for `until`, which goes with `from`: `exit = { from = \"left\", to = \"right\" }`."),
     key("passage.<passage>.times", Kind::List(&Kind::Number(POSITIVE)), Rule("none"), of_passage!(times),

@@ -165,7 +165,8 @@ impl Settings {
                 PassageStart::Density => Some(DENSITY.to_owned()),
             },
             to: None,
-            until: Some(named(&one.until)),
+            until: one.exits.is_empty().then(|| named(&one.until)),
+            exits: (!one.exits.is_empty()).then(|| one.exits.iter().map(named).collect()),
             start: match &one.start {
                 PassageStart::State(state) => {
                     let pairs = axes.iter().zip(state);

@@ -16,6 +16,8 @@ struct Given {
     name: String,
     text: String,
     place: Place,
+    /// Whether it is made of others, which say what is wrong with them.
+    is_joined: bool,
 }
 
 /// Checks `[regions]` and `[passage]`: the regions with names, and the questions.
@@ -31,6 +33,7 @@ pub(super) fn read(
                 name: name.clone(),
                 text: text.clone(),
                 place: entry.node.place.clone(),
+                is_joined: false,
             });
         }
     }
@@ -56,7 +59,10 @@ pub(super) fn read(
     let read = match regions(model, &texts) {
         Ok(read) => read,
         Err(errors) => {
-            for error in errors {
+            let own = errors
+                .into_iter()
+                .filter(|error| !given[error.index].is_joined);
+            for error in own {
                 let diagnostic = diagnostic(reader, &given[error.index], &error);
                 reader.report(diagnostic);
             }
@@ -65,9 +71,10 @@ pub(super) fn read(
     };
     let questions = asked
         .into_iter()
-        .map(|(passage, (until, start))| PassageQuestion {
+        .map(|(passage, (until, exits, start))| PassageQuestion {
             name: passage.name.clone(),
             until: read[until].clone(),
+            exits: exits.into_iter().map(|part| read[part].clone()).collect(),
             start: match start {
                 GivenStart::State(state) => PassageStart::State(state),
                 GivenStart::Region(region) => PassageStart::Region(read[region].clone()),
@@ -120,9 +127,19 @@ fn ends(
     passage: &PassageDraft,
     given: &mut Vec<Given>,
     model: &Model,
-) -> Option<(usize, GivenStart)> {
+) -> Option<(usize, Vec<usize>, GivenStart)> {
     let name = passage.name.as_str();
-    let (word, until) = match (&passage.until, &passage.to) {
+    let mut exits = Vec::new();
+    // Any of several regions ends the passage.
+    let either = passage.exits.as_ref().map(|parts| {
+        let texts = parts.iter().enumerate().map(|(part, text)| {
+            let own = PassageQuestion::exit_name(name, part);
+            exits.push(region(reader, given, name, ("until", own), text));
+            format!("({text})")
+        });
+        texts.collect::<Vec<_>>().join(" or ")
+    });
+    let (word, until) = match (either.as_ref().or(passage.until.as_ref()), &passage.to) {
         (Some(until), None) => ("until", until),
         (None, Some(to)) => ("to", to),
         (until, _) => {
@@ -139,10 +156,14 @@ fn ends(
             return None;
         }
     };
-    let until = region(reader, given, name, word, until);
+    let until = region(reader, given, name, (word, format!("{name}_{word}")), until);
+    given[until].is_joined |= either.is_some();
     let start = match (&passage.from, passage.start.is_empty()) {
         (Some(from), true) if from.trim() == DENSITY => GivenStart::Density,
-        (Some(from), true) => GivenStart::Region(region(reader, given, name, "from", from)),
+        (Some(from), true) => {
+            let own = ("from", format!("{name}_from"));
+            GivenStart::Region(region(reader, given, name, own, from))
+        }
         (None, false) => GivenStart::State(state(reader, passage, model)?),
         (from, _) => {
             let title = match from {
@@ -157,7 +178,7 @@ fn ends(
             return None;
         }
     };
-    Some((until, start))
+    Some((until, exits, start))
 }
 
 /// The number of a region that a passage names, or gives as an inequality.
@@ -165,7 +186,7 @@ fn region(
     reader: &Reader<'_>,
     given: &mut Vec<Given>,
     passage: &str,
-    word: &str,
+    (word, name): (&str, String),
     text: &str,
 ) -> usize {
     if let Some(known) = given.iter().position(|one| one.name == text.trim()) {
@@ -174,9 +195,10 @@ fn region(
     let place = reader.place(&["passage", passage, word]);
     let whole = &reader.document().root.place;
     given.push(Given {
-        name: format!("{passage}_{word}"),
+        name,
         text: text.to_owned(),
         place: place.unwrap_or(whole).clone(),
+        is_joined: false,
     });
     given.len() - 1
 }
