@@ -398,7 +398,7 @@ fn brownian_motion_with_drift_leaves_an_interval_by_either_end() {
             &format!("upper end from {x}"),
             found.shares[0],
             exact(x),
-            1e-3,
+            1e-2,
         );
         holds(
             &format!("lower end from {x}"),

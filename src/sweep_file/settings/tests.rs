@@ -105,6 +105,39 @@ fn what_closes_on_itself_is_an_angle_of_harmonics() {
     assert!(none.contains("greater than zero"), "{none}");
 }
 
+#[test]
+fn a_passage_may_end_in_one_of_several_regions() {
+    let text = WALLED.replace("[\"reflecting\", \"open\"]", "\"reflecting\"")
+        + "[regions]\nfar = \"x > 8\"\n[passage]\nout = { start = { x = 2, v = 0 }, until = [\"far\", \"x < 0.5\"] }\n";
+    let settings = parse(&text, &[]).unwrap();
+    let labels = |settings: &Settings| {
+        let question = &settings.family.passages()[0];
+        let all = (0..question.exits.len()).map(|part| question.exit_label(part));
+        all.collect::<Vec<_>>()
+    };
+    assert_eq!(labels(&settings), ["far", "2"]);
+    assert_eq!(
+        settings.family.passages()[0].until.text(),
+        "(far) or (x < 0.5)"
+    );
+    let written = settings.to_toml();
+    assert!(
+        written.contains(r#"until = ["far", "x < 0.5"]"#),
+        "{written}"
+    );
+    assert_eq!(labels(&parse(&written, &[]).unwrap()), ["far", "2"]);
+    // What is wrong with a part is told once.
+    let wrong = parse(&text.replace("x < 0.5", "x < q"), &[])
+        .unwrap_err()
+        .to_string();
+    assert!(
+        wrong.contains("`q`") && wrong.contains("1 error"),
+        "{wrong}"
+    );
+    let none = parse(&text.replace("[\"far\", \"x < 0.5\"]", "[]"), &[]);
+    assert!(none.unwrap_err().to_string().contains("list of strings"));
+}
+
 /// A half line.
 const WALLED: &str = r#"
 [system.equations]
