@@ -243,11 +243,13 @@ pub enum PassageFault {
     Rare,
     /// Paths run away without entering the region.
     RunsAway,
+    /// The slowest mode is no exchange between the two regions.
+    NoSwitching,
 }
 
 impl PassageFault {
     /// All of them, with their codes.
-    const CODES: [(Self, &'static str); 8] = [
+    const CODES: [(Self, &'static str); 9] = [
         (Self::Nowhere, "passage-nowhere"),
         (Self::Everywhere, "passage-everywhere"),
         (Self::Start, "passage-start"),
@@ -256,6 +258,7 @@ impl PassageFault {
         (Self::Unsolved, "passage-unsolved"),
         (Self::Rare, "passage-rare"),
         (Self::RunsAway, "passage-runs-away"),
+        (Self::NoSwitching, "passage-no-switching"),
     ];
 
     fn code(self) -> &'static str {

@@ -90,12 +90,14 @@ mod peak;
 mod power;
 mod resolvent;
 mod slow;
+mod switching;
 mod transfer;
 
 pub use power::{
     Features, Power, PowerQuestion, Spectrum, StateFunction, power_spectra, rate_of_change,
 };
 pub use slow::{SlowMode, SlowModes, slow_modes};
+pub use switching::{Switching, switching};
 
 use crate::generator::GeneratorError;
 use crate::space::SpaceError;

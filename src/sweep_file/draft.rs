@@ -242,6 +242,7 @@ pub(super) struct PassageDraft {
     pub(super) until: Option<String>,
     /// Several regions, each of which ends the passage; in place of `until`.
     pub(super) exits: Option<Vec<String>>,
+    pub(super) switching: Option<bool>,
     /// Axes and coordinates.
     pub(super) start: Vec<(String, f64)>,
     pub(super) times: Option<Vec<f64>>,

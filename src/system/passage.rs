@@ -13,6 +13,8 @@ pub struct PassageQuestion {
     pub exits: Vec<Region>,
     /// Where the process starts.
     pub start: PassageStart,
+    /// Whether the rates between the regions of start and end are wanted, there and back.
+    pub switching: bool,
     /// Times at which the probability is wanted that the process still goes on, ascending.
     pub times: Vec<f64>,
     /// Shares of the processes, between 0 and 1, ascending: the times by which so many have ended are wanted.

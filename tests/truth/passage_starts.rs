@@ -89,6 +89,7 @@ fn found(
         name: "leave".to_owned(),
         until: region(&until),
         exits: Vec::new(),
+        switching: false,
         start: match &from {
             Some(text) => PassageStart::Region(region(text)),
             None => PassageStart::Density,

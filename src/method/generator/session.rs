@@ -153,8 +153,8 @@ impl GeneratorSession {
         let (asked, cancellation) = ((problem, value), &self.cancellation);
         add_passages(report, asked, system, density, options, cancellation)?;
         let unknowns = known.map(|(unknowns, _)| unknowns);
-        add_slow_modes(report, &self.source, system, unknowns, cancellation)?;
         let at = (system, value);
+        add_slow_modes(report, &self.source, at, density, cancellation)?;
         add_spectra(report, &self.source, at, unknowns, cancellation)
     }
 

@@ -1,8 +1,8 @@
 //! Times of first passage that a family asks for, as columns.
 
 use crate::continuation::measure::{
-    PASSAGE_DEVIATION, PASSAGE_MEAN, PASSAGE_QUANTILE, PASSAGE_RATE, PASSAGE_SHARE,
-    PASSAGE_SURVIVAL,
+    PASSAGE_BACK, PASSAGE_DEVIATION, PASSAGE_MEAN, PASSAGE_QUANTILE, PASSAGE_RATE, PASSAGE_SHARE,
+    PASSAGE_SURVIVAL, PASSAGE_THERE,
 };
 use crate::continuation::{Measure, MeasureColumn, MeasureKind};
 use crate::passage::WithError;
@@ -30,7 +30,31 @@ pub(in crate::method) fn columns(question: &PassageQuestion) -> Vec<MeasureColum
         .iter()
         .map(|share| at(PASSAGE_QUANTILE, share));
     let moments = moments.into_iter().chain(exits);
-    moments.chain(times).chain(shares).collect()
+    let numbers = moments.chain(times).chain(shares);
+    numbers.chain(rates_between(question)).collect()
+}
+
+/// The columns of the rates between two states.
+fn rates_between(question: &PassageQuestion) -> impl Iterator<Item = MeasureColumn> {
+    let both = [PASSAGE_THERE, PASSAGE_BACK].into_iter();
+    both.filter(|_| question.switching)
+        .map(|kind| MeasureColumn {
+            kind,
+            of: question.name.clone(),
+        })
+}
+
+/// The rates between two states as measures, there and back.
+pub(in crate::method) fn switching_measures(
+    question: &PassageQuestion,
+    rates: [WithError; 2],
+) -> Vec<Measure> {
+    let pairs = rates_between(question).zip(rates);
+    let one = |(column, (value, error)): (MeasureColumn, WithError)| Measure {
+        error: Some(error),
+        ..column.kind.measure(&column.of, value)
+    };
+    pairs.map(one).collect()
 }
 
 /// The numbers of a passage as measures, from the order of its columns.

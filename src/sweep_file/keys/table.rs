@@ -217,6 +217,8 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "The region at whose border a passage ends: a name, or an inequality such as `abs(x) > 2`. How long that takes is told in `points.csv`, with errors (docs/passage.md). Of several, `[\"x > 2\", \"x < -2\"]`, any ends it, and the share of each is told."),
     key("passage.<passage>.to", Kind::Text, Rule("`until`"), of_passage!(to),
         "Another word for `until`, which goes with `from`: `exit = { from = \"left\", to = \"right\" }`."),
+    key("passage.<passage>.switching", Kind::Choice(switch), Rule("`off`"), of_passage!(switching),
+        "Whether the rates from the region `from` to the region `to` and back are wanted as the slowest mode has them (docs/passage.md)."),
     key("passage.<passage>.times", Kind::List(&Kind::Number(POSITIVE)), Rule("none"), of_passage!(times),
         "Times at which the probability is wanted that a passage still goes on."),
     key("passage.<passage>.quantiles", Kind::List(&Kind::Number(OPEN_UNIT)), Rule("none"), of_passage!(quantiles),

@@ -174,6 +174,7 @@ impl Settings {
                 }
                 _ => Vec::new(),
             },
+            switching: one.switching.then_some(true),
             times: (!one.times.is_empty()).then(|| one.times.clone()),
             quantiles: (!one.quantiles.is_empty()).then(|| one.quantiles.clone()),
         });

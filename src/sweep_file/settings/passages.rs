@@ -48,7 +48,7 @@ pub(super) fn read(
             refuse(reader, &passage.name, title, remedy);
             continue;
         }
-        if let Some(ends) = ends(reader, passage, &mut given, model) {
+        if let Some(ends) = ends(reader, (draft, passage), &mut given, model) {
             asked.push((passage, ends));
         }
     }
@@ -80,6 +80,7 @@ pub(super) fn read(
                 GivenStart::Region(region) => PassageStart::Region(read[region].clone()),
                 GivenStart::Density => PassageStart::Density,
             },
+            switching: passage.switching == Some(true),
             times: ascending(passage.times.as_ref()),
             quantiles: ascending(passage.quantiles.as_ref()),
         });
@@ -124,7 +125,7 @@ enum GivenStart {
 /// The region that ends a passage, and its start; `None` where something is missing or said twice.
 fn ends(
     reader: &mut Reader<'_>,
-    passage: &PassageDraft,
+    (draft, passage): (&Draft, &PassageDraft),
     given: &mut Vec<Given>,
     model: &Model,
 ) -> Option<(usize, Vec<usize>, GivenStart)> {
@@ -178,7 +179,37 @@ fn ends(
             return None;
         }
     };
+    if passage.switching == Some(true) && !may_switch(reader, draft, passage, &start) {
+        return None;
+    }
     Some((until, exits, start))
+}
+
+/// Whether rates between two states can be asked for: by the generator, of a passage between regions.
+fn may_switch(
+    reader: &mut Reader<'_>,
+    draft: &Draft,
+    passage: &PassageDraft,
+    start: &GivenStart,
+) -> bool {
+    let name = passage.name.as_str();
+    if draft.method.kind != MethodKind::Generator {
+        let method = draft.method.kind.name();
+        let title =
+            format!("rates between states are worked out by `generator`, not by `{method}`");
+        let remedy = "set `method.kind = \"generator\"`, or leave `switching` out";
+        refuse(reader, name, title, remedy);
+        return false;
+    }
+    if !matches!(start, GivenStart::Region(_)) || passage.exits.is_some() {
+        let title =
+            format!("passage `{name}` has `switching`, and is not from one region to another");
+        let remedy =
+            "give the two states as `from` and `to`: regions, such as `from = \"x < -0.5\"`";
+        refuse(reader, name, title, remedy);
+        return false;
+    }
+    true
 }
 
 /// The number of a region that a passage names, or gives as an inequality.
