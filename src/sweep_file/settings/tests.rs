@@ -138,6 +138,27 @@ fn a_passage_may_end_in_one_of_several_regions() {
     assert!(none.unwrap_err().to_string().contains("list of strings"));
 }
 
+#[test]
+fn rates_between_two_states_are_of_two_regions_by_the_generator() {
+    let passage = "[passage]\nout = { from = \"x < 1\", to = \"x > 8\", switching = \"on\" }\n";
+    let text = format!("{WALLED}{passage}");
+    let settings = parse(&text, &[]).unwrap();
+    assert!(settings.family.passages()[0].switching);
+    let again = parse(&settings.to_toml(), &[]).unwrap();
+    assert!(again.family.passages()[0].switching);
+    let refused = |text: &str, sets: &[&str]| parse(text, sets).unwrap_err().to_string();
+    let sampled = refused(&text, &["method.kind=monte-carlo"]);
+    assert!(
+        sampled.contains("by `generator`, not by `monte-carlo`"),
+        "{sampled}"
+    );
+    let state = refused(
+        &text.replace("from = \"x < 1\"", "start = { x = 1, v = 0 }"),
+        &[],
+    );
+    assert!(state.contains("not from one region to another"), "{state}");
+}
+
 /// A half line.
 const WALLED: &str = r#"
 [system.equations]
