@@ -125,8 +125,9 @@ impl ExitTimes {
         counts
     }
 
-    /// Mean, standard deviation and rate, the shares of those that ended in each part of the region, the probabilities to go on at some times, and the times by which shares of
-    /// the paths have ended, in this order. Not finite where too few paths have ended.
+    /// Mean, standard deviation and rate, the shares of those that ended in each part of the region, the
+    /// probabilities to go on at some times, and the times by which shares of the paths have ended, in this order.
+    /// Not finite where too few paths have ended.
     ///
     /// The error of sampling is that of a delete-a-block jackknife over 32 blocks of paths; of probabilities and
     /// quantiles at least the binomial one.

@@ -32,8 +32,8 @@ pub struct SlowModes {
     /// In the order of their decay rates, a pair of conjugates once, of those that oscillate no faster than about three
     /// times as fast as states change; fewer than wanted where no more are known.
     pub modes: Vec<SlowMode>,
-    /// The left vector of the first mode on the cells, but for a constant and a factor; empty where it oscillates, or is not
-    /// known.
+    /// The left vector of the first mode on the cells, but for a constant and a factor; empty where it oscillates, or
+    /// is not known.
     pub left: Vec<f64>,
     /// Factorisations and passes.
     pub work: AbsorbingWork,

@@ -1,9 +1,10 @@
 //! Rates between two states from the slowest mode.
 //!
-//! Where two states exchange probability much more slowly than each settles, the slowest mode is that exchange: its decay
-//! rate λ is the sum of the rates there and back, and its left vector is flat in each state, at l_A and l_B. With
-//! Σ l p = 0 the shares of the states are π_A = -l_B/(l_A - l_B) and π_B = 1 - π_A; the rate from A to B is λ π_B. No
-//! border between the states has a part in that, and paths that come to one and turn round at once count for nothing.
+//! Where two states exchange probability much more slowly than each settles, the slowest mode is that exchange: its
+//! decay rate λ is the sum of the rates there and back, and its left vector is flat in each state, at l_A and l_B.
+//! With Σ l p = 0 the shares of the states are π_A = -l_B/(l_A - l_B) and π_B = 1 - π_A; the rate from A to B is λ
+//! π_B. No border between the states has a part in that, and paths that come to one and turn round at once count for
+//! nothing.
 
 use super::{SlowModes, dot};
 
@@ -48,11 +49,11 @@ impl Plateau {
 }
 
 /// The rates between two states, regions with these levels (negative inside) at the cells, from the modes and the
-/// unknowns of the steady state, with what those of a second discretisation differ by. `None` where the slowest mode is no
-/// exchange between them: it oscillates, or its left vector is not flat in each, or has one height in both.
+/// unknowns of the steady state, with what those of a second discretisation differ by. `None` where the slowest mode
+/// is no exchange between them: it oscillates, or its left vector is not flat in each, or has one height in both.
 ///
-/// The error holds that of the decay rate, what the second discretisation changes of the shares, and the variance of the
-/// left vector inside the states: by so much of it the mode is not an exchange of two states.
+/// The error holds that of the decay rate, what the second discretisation changes of the shares, and the variance of
+/// the left vector inside the states: by so much of it the mode is not an exchange of two states.
 pub fn switching(
     modes: &SlowModes,
     (unknowns, changes): (&[f64], Option<&[f64]>),

@@ -68,8 +68,8 @@ pub(super) fn by_schemes(
 /// Moments of sums that end at walls, with the error of the cells there: fluxes beside a wall are of second order.
 ///
 /// So is what the sums change that do not end at walls, which is taken for the error of both moments. Along an axis
-/// without walls the equations say more: d⟨y⟩/dt and d⟨y²⟩/dt are zero, and what is left of them over a relaxation time is
-/// an error too.
+/// without walls the equations say more: d⟨y⟩/dt and d⟨y²⟩/dt are zero, and what is left of them over a relaxation
+/// time is an error too.
 pub(super) fn with_walls(
     all: Vec<EstimatedMoments>,
     (system, space): (&dyn System, &CellSpace),
