@@ -245,6 +245,8 @@ pub enum PassageFault {
     Rare,
     /// Paths run away without entering the region.
     RunsAway,
+    /// The slowest mode is no exchange between the two regions.
+    NoSwitching,
 }
 
 /// A class of cells with a steady state of its own, beside others.

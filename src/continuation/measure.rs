@@ -91,6 +91,18 @@ pub(crate) const PASSAGE_SURVIVAL: MeasureKind = of_passage(
     "1",
     "probability that a passage still goes on at a time, which stands before the word",
 );
+pub(crate) const PASSAGE_SHARE: MeasureKind = of_passage(
+    "share",
+    "1",
+    "share of the passages that end in one of several regions, which stands before the word",
+);
+pub(crate) const PASSAGE_THERE: MeasureKind = of_passage(
+    "switching_rate",
+    "1/t",
+    "rate from the first to the second of two states, of the slowest mode",
+);
+pub(crate) const PASSAGE_BACK: MeasureKind =
+    of_passage("return_rate", "1/t", "the rate back, of the slowest mode");
 pub(crate) const PASSAGE_QUANTILE: MeasureKind = of_passage(
     "quantile",
     "t",

@@ -33,6 +33,8 @@ pub struct AbsorbingGenerator {
     pub kept: Vec<bool>,
     /// Rate at which the process ends from a cell: it enters the region, or leaves the range of the cells.
     pub ends: Vec<f64>,
+    /// Parts of that which enter the region: the cell inside it, the cell from which, rate. A pair may have several.
+    pub entries: Vec<(usize, usize, f64)>,
     /// Weights with which the unknowns sum to the mass outside of the region: zero inside, one away from the border,
     /// where the density does not end between two nodes. In two ways, which differ where the border is oblique.
     pub weights: [Vec<f64>; 2],
@@ -118,6 +120,7 @@ pub fn assemble_absorbing(
         weights: [0; 2].map(|_| (0..space.n_cells()).map(weight).collect()),
         ends: vec![0.0; space.n_cells()],
         entries: Vec::new(),
+        entered: Vec::new(),
         border,
     };
     for axis in 0..axes.len() {
@@ -166,6 +169,7 @@ struct Assembly<'a> {
     border: Border<'a>,
     entries: Vec<(usize, usize, f64)>,
     ends: Vec<f64>,
+    entered: Vec<(usize, usize, f64)>,
     weights: [Vec<f64>; 2],
 }
 
@@ -237,7 +241,13 @@ impl Assembly<'_> {
                     &one
                 };
                 for &(source, share) in read {
-                    self.add(line, line.at(source), face, (from, to), weight * share);
+                    self.add(
+                        line,
+                        line.at(source),
+                        face,
+                        (from, to, count),
+                        weight * share,
+                    );
                 }
             }
         }
@@ -249,18 +259,24 @@ impl Assembly<'_> {
         line: &GridLine,
         source: usize,
         face: usize,
-        (from, to): (usize, usize),
+        (from, to, count): (usize, usize, usize),
         flux: f64,
     ) {
         if face > from {
             self.entries.push((line.at(face - 1), source, -flux));
         } else {
             self.ends[source] -= flux;
+            if from > 0 {
+                self.entered.push((line.at(from - 1), source, -flux));
+            }
         }
         if face < to {
             self.entries.push((line.at(face), source, flux));
         } else {
             self.ends[source] += flux;
+            if to < count {
+                self.entered.push((line.at(to), source, flux));
+            }
         }
     }
 
@@ -300,6 +316,7 @@ impl Assembly<'_> {
             rates: self.entries,
             kept,
             ends: self.ends,
+            entries: self.entered,
             weights: self.weights,
         })
     }
@@ -349,6 +366,23 @@ mod tests {
                     let size: f64 = column.data().iter().map(|rate| rate.abs()).sum();
                     assert!((sum + found.ends[cell]).abs() < 1e-13 * size, "{until}");
                     assert!(column.indices().iter().all(|&row| found.kept[row]));
+                }
+                let mut entered = vec![0.0; found.ends.len()];
+                for &(inside, source, rate) in &found.entries {
+                    assert!(!found.kept[inside] && found.kept[source]);
+                    entered[source] += rate;
+                }
+                // Away from the ends of the range nothing ends but by entering.
+                let is_at_end = |cell: usize| {
+                    let pairs = space.axes().iter().enumerate();
+                    pairs.into_iter().any(|(axis, cells)| {
+                        let position = space.position(cell, axis);
+                        position < 3 || position + 3 >= cells.count()
+                    })
+                };
+                for cell in (0..entered.len()).filter(|&cell| !is_at_end(cell)) {
+                    let size = found.ends[cell].abs().max(1e-300);
+                    assert!((entered[cell] - found.ends[cell]).abs() < 1e-12 * size.max(1.0));
                 }
                 assert!(found.ends.iter().sum::<f64>() > 0.0);
             }

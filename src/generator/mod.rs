@@ -48,7 +48,7 @@ pub use assemble::assemble;
 pub(crate) use assemble::assemble_damped;
 pub use derivative::assemble_derivative;
 pub use grading::automatic_grading;
-pub use masses::{cell_masses, unknown_moments};
+pub use masses::{cell_masses, summed_to_walls, unknown_moments};
 pub(crate) use one_axis::exponent_at;
 pub use one_axis::{End, OneAxis, one_axis, profile};
 pub(crate) use resolution::{Resolution, resolution};

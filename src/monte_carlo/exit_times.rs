@@ -15,6 +15,8 @@ const LIKE: f64 = 2.0;
 pub(super) struct Block {
     /// Of each path with the step, and with half of it; infinite where it did not end.
     pub(super) times: Vec<[f64; 2]>,
+    /// Which part of the region they entered.
+    pub(super) exits: Vec<[usize; 2]>,
     pub(super) runaways: usize,
     pub(super) steps: u64,
 }
@@ -23,6 +25,7 @@ impl Block {
     pub(super) fn new(paths: usize) -> Self {
         Self {
             times: vec![[f64::INFINITY; 2]; paths],
+            exits: vec![[0; 2]; paths],
             runaways: 0,
             steps: 0,
         }
@@ -34,6 +37,8 @@ impl Block {
 pub struct ExitTimes {
     blocks: Vec<Block>,
     longest: f64,
+    /// Parts of the region.
+    parts: usize,
 }
 
 /// A number that times of paths say.
@@ -61,8 +66,12 @@ impl ExitNumber {
 }
 
 impl ExitTimes {
-    pub(super) fn new(blocks: Vec<Block>, longest: f64) -> Self {
-        Self { blocks, longest }
+    pub(super) fn new(blocks: Vec<Block>, longest: f64, parts: usize) -> Self {
+        Self {
+            blocks,
+            longest,
+            parts,
+        }
     }
 
     /// Number of paths.
@@ -101,14 +110,31 @@ impl ExitTimes {
         times
     }
 
-    /// Mean, standard deviation and rate, the probabilities to go on at some times, and the times by which shares of
-    /// the paths have ended, in this order. Not finite where too few paths have ended.
+    /// How many paths entered each part of the region, with the step (0) or half of it (1), all blocks but one.
+    fn entered(&self, with: usize, without: Option<usize>) -> Vec<usize> {
+        let mut counts = vec![0; self.parts];
+        let blocks = self.blocks.iter().enumerate();
+        for (_, block) in blocks.filter(|(number, _)| Some(*number) != without) {
+            for (times, exits) in block.times.iter().zip(&block.exits) {
+                let part = counts
+                    .get_mut(exits[with])
+                    .filter(|_| times[with].is_finite());
+                part.into_iter().for_each(|count| *count += 1);
+            }
+        }
+        counts
+    }
+
+    /// Mean, standard deviation and rate, the shares of those that ended in each part of the region, the
+    /// probabilities to go on at some times, and the times by which shares of the paths have ended, in this order.
+    /// Not finite where too few paths have ended.
     ///
     /// The error of sampling is that of a delete-a-block jackknife over 32 blocks of paths; of probabilities and
     /// quantiles at least the binomial one.
     pub fn numbers(&self, times: &[f64], shares: &[f64]) -> Vec<ExitNumber> {
         let sample = |with, without| Sample {
             times: self.sorted(with, without),
+            entered: self.entered(with, without),
             longest: self.longest,
         };
         let all = sample(1, None);
@@ -150,6 +176,8 @@ fn jackknife(without: &[Vec<f64>], index: usize) -> f64 {
 /// Times, ascending, those of paths that were given up infinite.
 struct Sample {
     times: Vec<f64>,
+    /// Of those that ended, by the part of the region.
+    entered: Vec<usize>,
     longest: f64,
 }
 
@@ -217,7 +245,11 @@ impl Sample {
             }
         };
         let moments = [mean, (square - mean * mean).max(0.0).sqrt(), rate];
-        let numbers = moments.into_iter().chain(survival);
+        let entered = self
+            .entered
+            .iter()
+            .map(|&paths| paths as f64 / exits as f64);
+        let numbers = moments.into_iter().chain(entered).chain(survival);
         numbers.chain(shares.iter().map(quantile)).collect()
     }
 
@@ -253,8 +285,14 @@ impl Sample {
                 0.0
             }
         });
+        let exits = self.exits() as f64;
+        let entered = self.entered.iter().map(|&paths| {
+            let share = (paths as f64 + 0.5) / (exits + 1.0);
+            (share * (1.0 - share) / exits).sqrt()
+        });
         [0.0; 3]
             .into_iter()
+            .chain(entered)
             .chain(survival)
             .chain(quantile)
             .collect()

@@ -33,6 +33,7 @@ pub(crate) use halving::{BiasedQuantity, StepBias, TOLERATED_BIAS, automatic_ste
 pub use passage::{PassageRun, PassageStart, SteadyStart, first_passages};
 pub use path::{PathRun, SamplePath, sample_path};
 pub use relaxation::{Relaxation, relaxation};
+pub use walk::PassageTarget;
 
 use crate::space::CellSpace;
 use crate::system::{PeriodicDrift, System};

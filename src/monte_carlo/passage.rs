@@ -11,7 +11,7 @@ use super::ergodic::Starts;
 use super::estimate::BLOCKS;
 use super::exit_times::{Block, ExitTimes};
 use super::halving::over_two_steps;
-use super::walk::{Border, Chance, Walk};
+use super::walk::{Border, Chance, PassageTarget, Walk};
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::sampling::{Integrator, NormalStream, Stepper};
 use crate::space::CellSpace;
@@ -62,14 +62,14 @@ pub struct SteadyStart<'a> {
     pub spacing: f64,
 }
 
-/// Follows paths from a start until the level `until` is negative. Results are the same bits for any number of threads.
+/// Follows paths from a start until they enter the target. Results are the same bits for any number of threads.
 ///
 /// # Errors
 /// [`MonteCarloError`]; [`MonteCarloError::NoStart`] where no path starts outside of the region.
-pub fn first_passages(
+pub fn first_passages<'a>(
     system: &dyn System,
     space: &CellSpace,
-    until: &BoundQuantity,
+    until: impl Into<PassageTarget<'a>>,
     start: &PassageStart<'_>,
     run: &PassageRun,
     cancellation: &Cancellation,
@@ -80,11 +80,14 @@ pub fn first_passages(
             return Err(MonteCarloError::Time { name, value });
         }
     }
-    let (limits, border) = (Limits::new(space), Border::new(system, space, until));
+    let target = until.into();
+    let parts = target.exits.len();
+    let (limits, border) = (Limits::new(space), Border::new(system, space, target));
     let paths = Paths {
         space,
         system,
         border,
+        parts,
         limits,
         start,
         run,
@@ -98,6 +101,8 @@ struct Paths<'a> {
     space: &'a CellSpace,
     system: &'a dyn System,
     border: Border<'a>,
+    /// Parts of the target.
+    parts: usize,
     limits: Limits,
     start: &'a PassageStart<'a>,
     run: &'a PassageRun,
@@ -111,7 +116,7 @@ impl Paths<'_> {
             .with_max_len(1)
             .map(|number| self.block(number))
             .collect();
-        Ok(ExitTimes::new(blocks?, self.run.longest))
+        Ok(ExitTimes::new(blocks?, self.run.longest, self.parts))
     }
 
     fn block(&self, number: usize) -> Result<Block, MonteCarloError> {
@@ -137,6 +142,7 @@ impl Paths<'_> {
                 }
                 if let Some(path) = paths[lane].take() {
                     block.times[path] = [walks[0].times[lane], walks[1].times[lane]];
+                    block.exits[path] = [walks[0].exits[lane], walks[1].exits[lane]];
                 }
                 if next < count {
                     paths[lane] = Some(next);
@@ -244,7 +250,8 @@ mod tests {
         let mut paths = Paths {
             space: &space,
             system: &*system,
-            border: Border::new(&*system, &space, &until),
+            border: Border::new(&*system, &space, (&until).into()),
+            parts: 0,
             limits: Limits::new(&space),
             start: &start,
             run: &run,

@@ -13,16 +13,37 @@ use crate::system::{BoundQuantity, LANES, Lanes, System};
 /// Distance over which the slope of a level is taken, over the range of an axis.
 const SLOPE: f64 = 1e-7;
 
+/// The region at whose border paths end.
+#[derive(Debug, Clone, Copy)]
+pub struct PassageTarget<'a> {
+    /// Its level, negative inside.
+    pub until: &'a BoundQuantity,
+    /// Parts of it, by their levels: the shares of paths are wanted that enter each.
+    pub exits: &'a [BoundQuantity],
+}
+
+impl<'a> From<&'a BoundQuantity> for PassageTarget<'a> {
+    fn from(until: &'a BoundQuantity) -> Self {
+        Self { until, exits: &[] }
+    }
+}
+
 /// The border of the region.
 pub(super) struct Border<'a> {
     system: &'a dyn System,
     pub(super) until: &'a BoundQuantity,
+    /// Parts of the region, by their levels.
+    exits: &'a [BoundQuantity],
     /// Axes with noise on which the level depends, and how far a state is moved along each to see its slope.
     pub(super) noisy: Vec<(usize, f64)>,
 }
 
 impl<'a> Border<'a> {
-    pub(super) fn new(system: &'a dyn System, space: &CellSpace, until: &'a BoundQuantity) -> Self {
+    pub(super) fn new(
+        system: &'a dyn System,
+        space: &CellSpace,
+        PassageTarget { until, exits }: PassageTarget<'a>,
+    ) -> Self {
         let axes = space.axes().iter().zip(until.states()).enumerate();
         let noisy = axes.filter(|(axis, (_, matters))| **matters && system.is_noisy(*axis));
         Self {
@@ -31,7 +52,15 @@ impl<'a> Border<'a> {
                 .collect(),
             system,
             until,
+            exits,
         }
+    }
+
+    /// The part of the region that a path enters which is in a state, or was inside on its way there: the nearest one.
+    fn exit(&self, state: &[f64]) -> usize {
+        let levels = self.exits.iter().map(|part| part.at(state)).enumerate();
+        let least = levels.min_by(|one, other| one.1.total_cmp(&other.1));
+        least.map_or(0, |(part, _)| part)
     }
 
     /// Levels of a batch of states, and the root of the variance that noise gives each per unit of time.
@@ -112,6 +141,8 @@ pub(super) struct Walk<'a> {
     pub(super) going: [bool; LANES],
     /// When it ended; infinite where it did not.
     pub(super) times: Lanes,
+    /// Which part of the region it entered then.
+    pub(super) exits: [usize; LANES],
 }
 
 impl<'a> Walk<'a> {
@@ -127,6 +158,7 @@ impl<'a> Walk<'a> {
             ages: [0; LANES],
             going: [false; LANES],
             times: [f64::INFINITY; LANES],
+            exits: [0; LANES],
         }
     }
 
@@ -168,6 +200,10 @@ impl<'a> Walk<'a> {
                     0.0
                 };
                 self.going[lane] = false;
+                if self.border.exits.len() > 1 {
+                    let state: Vec<f64> = self.states.iter().map(|lanes| lanes[lane]).collect();
+                    self.exits[lane] = self.border.exit(&state);
+                }
                 self.times[lane] = (self.ages[lane] as f64 + share) * self.time_step;
             }
             self.ages[lane] += 1;

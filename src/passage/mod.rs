@@ -2,7 +2,8 @@
 //!
 //! A passage is solved with the generator on the cells outside of its target (`generator::absorbing`). The times z that
 //! a process which starts spread as p₀ occupies the cells, Q z = -p₀, sum to the mean time, and from there on every
-//! moment is one more back substitution: E T² = 2 Σ w with Q w = -z. The rate is that of the quasi-stationary density,
+//! moment is one more back substitution: E T² = 2 Σ w with Q w = -z. The share that ends by entering one part of the
+//! target is Σ e z, with e the rates at which cells enter that part. The rate is that of the quasi-stationary density,
 //! Q u = -r u: what a process has per unit of time that has lasted long.
 //!
 //! Every number is solved by the scheme, by the same scheme with half its dissipation, and both again on three quarters
@@ -20,6 +21,7 @@
 //! let until = regions(&model, &[("right", "x > 0")]).unwrap().remove(0);
 //! let passage = Passage {
 //!     until: until.level().bind(&model.values(&given)?)?,
+//!     exits: Vec::new(),
 //!     start: Start::State(vec![-1.0]),
 //!     times: vec![10.0],
 //!     quantiles: vec![0.5],
@@ -42,6 +44,7 @@
 //! | masses of a density in a region | `spread.rs` |
 //! | interpolation on all points of a grid | `tensor.rs` |
 //! | numbers on one grid | `solve.rs` |
+//! | shares of exits | `exits.rs` |
 //! | the rate, from the vectors of moments | `rate.rs` |
 //! | its density, from one grid to another | `lasting.rs` |
 //! | probabilities at times, and quantiles | `survival.rs` |
@@ -49,6 +52,7 @@
 
 mod cells;
 mod density_start;
+mod exits;
 mod lasting;
 mod nodes;
 mod rate;
@@ -72,6 +76,8 @@ use crate::system::{BoundQuantity, ParameterValues, PassageQuestion, PassageStar
 pub struct Passage {
     /// Negative in the region at whose border the process ends, as a region's level is.
     pub until: BoundQuantity,
+    /// Parts of that region, negative inside each: the shares of the processes are wanted that end by entering each.
+    pub exits: Vec<BoundQuantity>,
     /// Where it starts.
     pub start: Start,
     /// Times at which the probability is wanted that it still goes on.
@@ -88,6 +94,9 @@ impl Passage {
     pub fn bind(question: &PassageQuestion, values: &ParameterValues) -> Result<Self, SystemError> {
         Ok(Self {
             until: question.until.level().bind(values)?,
+            exits: (question.exits.iter())
+                .map(|part| part.level().bind(values))
+                .collect::<Result<_, _>>()?,
             start: match &question.start {
                 PassageStart::State(state) => Start::State(state.clone()),
                 PassageStart::Region(region) => Start::Density(Some(region.level().bind(values)?)),

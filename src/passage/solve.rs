@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::cells::{PassageCells, cells};
 use super::density_start::DensityStart;
+use super::exits::{Exits, rate_change as entry_change};
 use super::lasting::Lasting;
 use super::nodes::{FEWER_NODES, NODES};
 use super::rate::slowest;
@@ -23,14 +24,14 @@ use crate::system::{Enclosed, System};
 /// of the dissipation does.
 const UNSETTLED: f64 = 0.02;
 
-/// Numbers of a passage: mean, standard deviation, the rate of the quasi-stationary density; then the probabilities at
-/// times and the quantiles that are asked for.
+/// Numbers of a passage: mean, standard deviation, the rate of the quasi-stationary density, the shares of exits; then
+/// the probabilities at times and the quantiles that are asked for.
 pub(super) struct Numbers {
     pub(super) values: Vec<f64>,
     /// Errors beside those of the cells: of the start, and of the models behind the last numbers.
     pub(super) errors: Vec<f64>,
-    /// What a border of lower order changes of mean, standard deviation and rate.
-    pub(super) border: [f64; 3],
+    /// What a border of lower order changes of mean, standard deviation, rate and shares.
+    pub(super) border: Vec<f64>,
     /// What of the mean's relative error comes from the density of the start, and from the border.
     stretch: f64,
 }
@@ -93,9 +94,10 @@ impl Question<'_> {
             judged.and_then(|density| DensityStart::new(self.passage, density, self.space, cells));
         let starts = [start.as_slice(), &coarse];
         let begun = other.map(|other| other.on(&space, &full.kept));
+        let exits = Exits::new(self.passage, &space, &full.kept);
         let (mut both, lasting) = moments(
             &mut solver,
-            [&full, &half, &third],
+            ([&full, &half, &third], &exits),
             starts,
             of_density.as_ref(),
             begun.as_deref(),
@@ -163,9 +165,9 @@ impl Question<'_> {
 /// for from `begun` on.
 fn moments(
     solver: &mut AbsorbingSolver<'_>,
-    [one, other, third]: [&AbsorbingGenerator; 3],
+    ([one, other, third], exits): ([&AbsorbingGenerator; 3], &Exits),
     [start, coarse]: [&[f64]; 2],
-    of_density: Option<&DensityStart<'_>>,
+    spread_start: Option<&DensityStart<'_>>,
     begun: Option<&[f64]>,
 ) -> Result<([Numbers; 2], Vec<f64>), PassageError> {
     if one.ends.iter().all(|&rate| rate == 0.0) {
@@ -222,6 +224,22 @@ fn moments(
         quotient if quotient > 0.0 && quotient.is_finite() => quotient,
         _ => found,
     };
+    let parts = exits.rates(one);
+    let entering = parts.iter().map(|rates| solver.expected(&stage, rates));
+    let entering: Vec<Expected> = entering.collect::<Result<_, _>>()?;
+    let into = parts.iter().zip(&entering);
+    let shares: Vec<f64> = into
+        .map(|(rates, share)| dot(rates, &first) + left_of(start, share, &first, &of_first))
+        .collect();
+    let share_changes = |other: &AbsorbingGenerator| -> Vec<f64> {
+        let others = exits.rates(other);
+        let pairs = parts.iter().zip(&others).zip(&entering);
+        let one = |((own, others), share): ((&Vec<f64>, &Vec<f64>), &Expected)| {
+            entry_change(own, others, &first) + share.through(&other.rates, &other.ends, &first)
+                - stage.of_balance(&of_first, share, &first)
+        };
+        pairs.map(one).collect()
+    };
     // Of mean, mean square and rate, by another generator.
     let changes = |other: &AbsorbingGenerator| -> [f64; 3] {
         let change = |expected: &Expected, times: &[f64], balance: &[f64]| {
@@ -237,7 +255,8 @@ fn moments(
     let spread = (square - mean * mean).max(f64::MIN_POSITIVE).sqrt();
     let [of_mean, of_square, of_rate] = changes(third);
     let of_deviation = (0.5 * of_square - mean * of_mean) / spread;
-    let border = [of_mean, of_deviation, of_rate].map(f64::abs);
+    let mut border = [of_mean, of_deviation, of_rate].map(f64::abs).to_vec();
+    border.extend(share_changes(third).into_iter().map(f64::abs));
     // What fewer nodes change of the start, and another way to end sums at an oblique border.
     let of_start = expected.difference(start, coarse).abs();
     let of_sums = (dot(others, &first) - mean).abs();
@@ -245,31 +264,42 @@ fn moments(
         .zip(expected.beside())
         .map(|(again, expected)| (again - mean * expected) / spread)
         .collect();
-    let of_density = of_density.map_or([0.0; 2], |start| {
+    let of_density = spread_start.map_or([0.0; 2], |start| {
         [start.error(expected.beside()), start.error(&squares)]
     });
-    let errors = vec![
+    let mut errors = vec![
         of_start + of_sums + of_density[0],
         of_start + of_sums + of_density[1],
         0.0,
     ];
-    let numbers = |mean: f64, square: f64, rate: f64| {
+    errors.extend(entering.iter().map(|share| {
+        let of_density = spread_start.map_or(0.0, |start| start.error(share.beside()));
+        share.difference(start, coarse).abs() + of_density
+    }));
+    let numbers = |mean: f64, square: f64, rate: f64, shares: &[f64]| {
         let deviation = (square - mean * mean).max(0.0).sqrt();
-        let values = vec![mean, deviation, rate];
+        let values = [&[mean, deviation, rate], shares].concat();
         let is_finite = values.iter().all(|value| value.is_finite());
         is_finite.then(|| Numbers {
             values,
             errors: errors.clone(),
-            border,
+            border: border.clone(),
             stretch: (of_density[0] + border[0]) / mean,
         })
     };
     let [mean_change, square_change, rate_change] = changes(other);
-    let full = numbers(mean, square, rate);
+    let full = numbers(mean, square, rate, &shares);
+    let changes = share_changes(other);
+    let half_shares: Vec<f64> = shares
+        .iter()
+        .zip(changes)
+        .map(|(share, change)| share + change)
+        .collect();
     let half = numbers(
         mean + mean_change,
         square + square_change,
         rate + rate_change,
+        &half_shares,
     );
     match (full, half) {
         (Some(full), Some(half)) => Ok(([full, half], lasting)),

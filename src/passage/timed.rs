@@ -34,6 +34,8 @@ pub struct Timed {
     pub deviation: WithError,
     /// Rate at which processes end that have lasted long.
     pub rate: WithError,
+    /// Shares of the processes that end by entering each part of the target that was asked for.
+    pub shares: Vec<WithError>,
     /// Probabilities that the process still goes on at the times that were asked for.
     pub survival: Vec<WithError>,
     /// The quantiles that were asked for.
@@ -79,14 +81,14 @@ pub fn timed(
     let mut errors: Vec<f64> = pairs(&finest[0].values, &finest[1].values)
         .map(|(full, half)| DAMPED * (full - half).abs())
         .collect();
-    let mut border = finest[0].border;
+    let mut border = finest[0].border.clone();
     for (solved, (factor, times)) in [(coarse, more), (coarsest, fewest)] {
         let others = without_dissipation(&solved.both);
         for (error, (value, other)) in errors.iter_mut().zip(pairs(&values, &others)) {
             *error = error.max(times * (value - other).abs());
         }
         let size = f64::powi(factor, BORDER_ORDER);
-        for (error, other) in border.iter_mut().zip(solved.both[0].border) {
+        for (error, other) in border.iter_mut().zip(&solved.both[0].border) {
             *error = error.max(size * other);
         }
         work.factorisations += solved.work.factorisations;
@@ -100,11 +102,13 @@ pub fn timed(
     let mut all = all.map(|((value, error), (full, half))| (value, error + full.max(half)));
     let mut next = || all.next().unwrap_or((f64::NAN, f64::NAN));
     let [mean, deviation, rate] = [next(), next(), next()];
+    let shares = all.by_ref().take(passage.exits.len()).collect();
     let survival = all.by_ref().take(passage.times.len()).collect();
     Ok(Timed {
         mean,
         deviation,
         rate,
+        shares,
         survival,
         quantiles: all.collect(),
         work,

@@ -287,6 +287,11 @@ fn passage_in_words(family: &Family, passage: usize, fault: PassageFault) -> Str
         PassageFault::RunsAway => {
             "paths run away without entering the region that is waited for, so that it has no mean time"
         }
+        PassageFault::NoSwitching => {
+            return format!(
+                "passage `{name}` has no rates from the slowest mode: that is no exchange between its two regions, or is not known"
+            );
+        }
     };
     format!("passage `{name}` has no numbers: {why}")
 }

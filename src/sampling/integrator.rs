@@ -31,6 +31,7 @@ pub(crate) struct Stepper<'a> {
     integrator: Integrator,
     time_step: f64,
     noise: Vec<Channel<'a>>,
+    mirrors: Vec<Mirror>,
     cancellation: Cancellation,
 }
 
@@ -38,6 +39,41 @@ pub(crate) struct Stepper<'a> {
 struct Channel<'a> {
     noise: &'a Noise,
     increment: Option<f64>,
+}
+
+/// Walls of an axis at which paths are reflected, infinite where there is none. A path between walls is the image of a
+/// free path of the system that goes on beyond them as in a mirror: folded back, with the drift turned round.
+struct Mirror {
+    axis: usize,
+    from: f64,
+    to: f64,
+}
+
+fn mirrors(system: &dyn System) -> Vec<Mirror> {
+    let walls = system.facts().reflecting.iter();
+    walls
+        .map(|(&axis, &(from, to))| Mirror { axis, from, to })
+        .collect()
+}
+
+impl Mirror {
+    /// The image of a coordinate between the walls, and whether it is turned round.
+    fn image(&self, x: f64) -> (f64, bool) {
+        // A step that passes both walls is of no use for anything; it ends at a wall.
+        if x < self.from {
+            ((2.0 * self.from - x).min(self.to), true)
+        } else if x > self.to {
+            ((2.0 * self.to - x).max(self.from), true)
+        } else {
+            (x, false)
+        }
+    }
+
+    fn fold(&self, states: &mut [Lanes]) {
+        for x in &mut states[self.axis] {
+            *x = self.image(*x).0;
+        }
+    }
 }
 
 impl<'a> Stepper<'a> {
@@ -57,6 +93,7 @@ impl<'a> Stepper<'a> {
             integrator,
             time_step,
             noise: system.noises().iter().map(channel).collect(),
+            mirrors: mirrors(system),
             cancellation: cancellation.clone(),
         }
     }
@@ -103,6 +140,36 @@ impl<'a> Stepper<'a> {
         match self.integrator {
             Integrator::StochasticHeun => heun(self, states, first, steps, normals),
             Integrator::EulerMaruyama => euler_maruyama(self, states, first, steps, normals),
+        }
+    }
+
+    /// Folds states back between the walls.
+    #[inline(always)]
+    fn fold(&self, states: &mut [Lanes]) {
+        for mirror in &self.mirrors {
+            mirror.fold(states);
+        }
+    }
+
+    /// The drift at states that may be beyond walls: that of their images, turned round along the axis of the wall.
+    #[inline(always)]
+    fn drift_beyond(&self, time: f64, states: &mut [Lanes], drift: &mut [Lanes]) {
+        if self.mirrors.is_empty() {
+            return self.system.drift(time, states, drift);
+        }
+        let mut signs = [[1.0; LANES]; MAX_DIMENSION];
+        for mirror in &self.mirrors {
+            for (x, sign) in states[mirror.axis].iter_mut().zip(&mut signs[mirror.axis]) {
+                let (image, is_turned) = mirror.image(*x);
+                *x = image;
+                *sign = if is_turned { -1.0 } else { 1.0 };
+            }
+        }
+        self.system.drift(time, states, drift);
+        for (drift, signs) in drift.iter_mut().zip(&signs) {
+            for (drift, sign) in drift.iter_mut().zip(signs) {
+                *drift *= sign;
+            }
         }
     }
 
@@ -154,13 +221,14 @@ fn heun(
                     states[axis][lane] + (step * start[axis][lane] + increments[axis][lane]);
             }
         }
-        stepper.system.drift(time + step, predictor, end);
+        stepper.drift_beyond(time + step, predictor, end);
         for axis in 0..dimension {
             for lane in 0..LANES {
                 let drift = half * (start[axis][lane] + end[axis][lane]);
                 states[axis][lane] += drift + increments[axis][lane];
             }
         }
+        stepper.fold(states);
     }
 }
 
@@ -187,6 +255,7 @@ fn euler_maruyama(
                 states[axis][lane] += step * start[axis][lane] + increments[axis][lane];
             }
         }
+        stepper.fold(states);
     }
 }
 

@@ -90,11 +90,13 @@ mod peak;
 mod power;
 mod resolvent;
 mod slow;
+mod switching;
 mod transfer;
 
 pub(crate) use power::rate_of_change;
 pub use power::{Features, Power, PowerQuestion, Spectrum, StateFunction, power_spectra};
 pub use slow::{SlowMode, SlowModes, slow_modes};
+pub use switching::{Switching, switching};
 
 use crate::generator::GeneratorError;
 use crate::space::SpaceError;

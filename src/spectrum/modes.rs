@@ -60,6 +60,8 @@ pub(super) struct GridMode {
     pub(super) change: Complex<f64>,
     /// What fewer vectors change, and at most what the ends of the range do.
     pub(super) error: f64,
+    /// Its left vector, known but for a constant and a factor; empty where the mode oscillates.
+    pub(super) left: Vec<f64>,
 }
 
 impl GridMode {
@@ -131,6 +133,10 @@ pub(super) fn modes(
         let relative = (eigen.change / value).norm();
         (relative <= ARTEFACT).then(|| GridMode {
             error: change + of_ends(grid, &eigen, (&rows, &columns), motion),
+            left: match value.im {
+                0.0 => real(&rows.combined(&eigen.rows)),
+                _ => Vec::new(),
+            },
             value,
             // A real eigenvalue stays one.
             change: match value.im {
@@ -140,6 +146,15 @@ pub(super) fn modes(
         })
     });
     Ok((all.collect(), work))
+}
+
+/// The real parts of a vector that is real but for a complex factor.
+fn real(vector: &[Complex<f64>]) -> Vec<f64> {
+    let largest = vector.iter().max_by(|a, b| a.norm().total_cmp(&b.norm()));
+    let Some(turn) = largest.map(|one| one.conj() / one.norm().max(f64::MIN_POSITIVE)) else {
+        return Vec::new();
+    };
+    vector.iter().map(|one| (one * turn).re).collect()
 }
 
 /// With Σ = 0: the steady state is left out.

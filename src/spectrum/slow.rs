@@ -32,6 +32,9 @@ pub struct SlowModes {
     /// In the order of their decay rates, a pair of conjugates once, of those that oscillate no faster than about three
     /// times as fast as states change; fewer than wanted where no more are known.
     pub modes: Vec<SlowMode>,
+    /// The left vector of the first mode on the cells, but for a constant and a factor; empty where it oscillates, or
+    /// is not known.
+    pub left: Vec<f64>,
     /// Factorisations and passes.
     pub work: AbsorbingWork,
 }
@@ -76,12 +79,18 @@ pub fn slow_modes(
     let first_unknown = known.iter().position(|one| !is_known(one));
     known.truncate(first_unknown.unwrap_or(wanted));
     known.truncate(wanted);
+    let first = found.iter().find(|one| {
+        let slowest = known.first();
+        slowest.is_some_and(|(value, _)| one.extrapolated() == *value)
+    });
+    let left = first.map(|one| one.left.clone()).unwrap_or_default();
     let modes = known.into_iter().map(|(value, error)| SlowMode {
         decay: (-value.re, error.re),
         frequency: (value.im.abs(), if value.im == 0.0 { 0.0 } else { error.im }),
     });
     Ok(SlowModes {
         modes: modes.collect(),
+        left,
         work,
     })
 }

@@ -107,6 +107,34 @@ pub(super) struct AxisDraft {
     pub(super) grade_smallest: Option<f64>,
 }
 
+/// What happens at an end of the cells of an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum EndKind {
+    /// A wall: nothing passes.
+    Reflecting,
+    /// The process ends. Refused with what to do instead.
+    Absorbing,
+    /// The range ends, and the process goes on.
+    Open,
+}
+
+impl EndKind {
+    /// The word in files.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Reflecting => "reflecting",
+            Self::Absorbing => "absorbing",
+            Self::Open => "open",
+        }
+    }
+
+    /// The end of that word.
+    pub(super) fn named(word: &str) -> Option<Self> {
+        let all = [Self::Reflecting, Self::Absorbing, Self::Open];
+        all.into_iter().find(|kind| kind.name() == word)
+    }
+}
+
 /// Equations as the file has them, each list in the order given.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct EquationsDraft {
@@ -120,6 +148,8 @@ pub(super) struct EquationsDraft {
     pub(super) define: Vec<(String, String)>,
     /// Axes, lower and upper bounds.
     pub(super) bounds: Vec<(String, [String; 2])>,
+    /// Axes with what happens at the lower and at the upper end of their cells.
+    pub(super) ends: Vec<(String, [EndKind; 2])>,
     /// Axes that are angles, with their periods.
     pub(super) angles: Vec<(String, f64)>,
 }
@@ -213,6 +243,9 @@ pub(super) struct PassageDraft {
     pub(super) from: Option<String>,
     pub(super) to: Option<String>,
     pub(super) until: Option<String>,
+    /// Several regions, each of which ends the passage; in place of `until`.
+    pub(super) exits: Option<Vec<String>>,
+    pub(super) switching: Option<bool>,
     /// Axes and coordinates.
     pub(super) start: Vec<(String, f64)>,
     pub(super) times: Option<Vec<f64>>,

@@ -122,7 +122,8 @@ impl Settings {
     ) -> Result<Vec<Arc<dyn System>>, Report> {
         let corners = self.corners().into_iter();
         let model = self.family.model().clone();
-        let ends: Vec<Arc<dyn System>> = corners.map(|values| model.system(&values)).collect();
+        let system = |values| self.family.within_walls(model.system(&values));
+        let ends: Vec<Arc<dyn System>> = corners.map(system).collect();
         let ranges = self.find_ranges(&ends, cancellation)?;
         for (axis, range) in self.axes.iter_mut().zip(ranges) {
             axis.range = Some(range);

@@ -1,6 +1,7 @@
 //! A system between walls: the same drift and noise, and nothing leaves given ranges. What the densities of the two
 //! differ by is what the mass that leaves the ranges does.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::{Facts, Lanes, Noise, System};
@@ -16,6 +17,15 @@ impl Enclosed {
     pub(crate) fn new(system: Arc<dyn System>, ranges: &[(f64, f64)]) -> Self {
         let facts = Facts {
             bounds: ranges.iter().copied().enumerate().collect(),
+            ..system.facts().clone()
+        };
+        Self { system, facts }
+    }
+
+    /// The system whose coordinates are reflected: axes with a lower and an upper wall, infinite where there is none.
+    pub(super) fn reflecting(system: Arc<dyn System>, walls: &BTreeMap<usize, (f64, f64)>) -> Self {
+        let facts = Facts {
+            reflecting: walls.clone(),
             ..system.facts().clone()
         };
         Self { system, facts }

@@ -21,6 +21,9 @@ use super::System;
 pub struct Facts {
     /// Values that the coordinate of an axis can never leave (for Dahl's law |z| ≤ f_c/λ), where they are known.
     pub bounds: BTreeMap<usize, (f64, f64)>,
+    /// Values between which the coordinate of an axis with noise is kept by reflection, whatever drift and noise do
+    /// there: no probability flows through them. Infinite where nothing reflects.
+    pub reflecting: BTreeMap<usize, (f64, f64)>,
     /// Mean and standard deviation of a coordinate that is a state of a linear filter of white noise, such as η in
     /// η' = -(η - mean)/τ + b ξ with constant b and τ, upon which nothing else acts. Such coordinates are independent
     /// of one another and normal; those of one filter may turn into one another, as η' = ω ν, ν' = -ω η - γ ν + b ξ do.
@@ -47,6 +50,7 @@ pub struct Facts {
 /// What is said of a system of which nothing is known.
 pub(super) static NOTHING: Facts = Facts {
     bounds: BTreeMap::new(),
+    reflecting: BTreeMap::new(),
     filtered_noise: BTreeMap::new(),
     relaxation_rates: BTreeMap::new(),
     turns: BTreeMap::new(),
@@ -66,15 +70,21 @@ impl Facts {
     }
 
     /// Whether the lower and the upper end of a range of an axis are walls: values that the coordinate never leaves
-    /// (`Facts::bounds`), to a billionth of the range. Nothing leaves a turn through its ends either.
+    /// (`Facts::bounds`) or at which it is reflected, to a billionth of the range. Nothing leaves a turn through its
+    /// ends either.
     pub(crate) fn walls(&self, axis: usize, (from, to): (f64, f64)) -> [bool; 2] {
         let tolerance = AT_A_BOUND * (to - from);
         if self.turns.get(&axis) == Some(&(from, to)) {
             return [true; 2];
         }
-        self.bounds(axis).map_or([false; 2], |(low, high)| {
-            [from <= low + tolerance, to >= high - tolerance]
-        })
+        let kept = |known: Option<(f64, f64)>| {
+            known.map_or([false; 2], |(low, high)| {
+                [from <= low + tolerance, to >= high - tolerance]
+            })
+        };
+        let bounds = kept(self.bounds(axis));
+        let reflecting = kept(self.reflecting.get(&axis).copied());
+        [0, 1].map(|end| bounds[end] || reflecting[end])
     }
 
     /// Coordinates at which switching surfaces cut an axis, in the order in which they are declared.

@@ -1,9 +1,10 @@
 //! A family of systems: a model with fixed values, and a path through its parameters. What is swept, said once.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::{
-    AtPhase, FixedPointFault, Linearised, MeasureLevel, Model, NoiseKind, ParameterValues,
+    AtPhase, Enclosed, FixedPointFault, Linearised, MeasureLevel, Model, NoiseKind, ParameterValues,
     PassageQuestion, Path, Quantity, Region, SpectrumQuestion, System, SystemError, Tangent,
     TangentFault,
 };
@@ -27,6 +28,7 @@ pub struct Family {
     /// Those of the first end.
     values: ParameterValues,
     path: Path,
+    walls: BTreeMap<usize, (f64, f64)>,
     /// Numbered on from the axes.
     quantities: Vec<Arc<Quantity>>,
     averaged: Vec<Arc<Quantity>>,
@@ -60,6 +62,7 @@ impl Family {
             model,
             values,
             path,
+            walls: BTreeMap::new(),
             quantities: Vec::new(),
             averaged: Vec::new(),
             regions: Vec::new(),
@@ -80,6 +83,29 @@ impl Family {
     pub fn with_quantities(mut self, quantities: Vec<Arc<Quantity>>) -> Self {
         self.quantities = quantities;
         self
+    }
+
+    /// The family between walls that reflect: axes with a lower and an upper wall, infinite where there is none. Noise
+    /// acts on these axes, and cells and bins end at the walls.
+    ///
+    /// ```
+    /// use pbif::system::{Family, Path, registry};
+    ///
+    /// let model = registry::find("bistable").unwrap();
+    /// let path = Path::parameter("sigma2", 0.1, 0.2);
+    /// let family = Family::new(model, &[("a", 1.0)], path).unwrap();
+    /// let family = family.with_walls([(0, (0.0, f64::INFINITY))]);
+    /// assert_eq!(family.at(0.1).unwrap().facts().reflecting[&0].0, 0.0);
+    /// ```
+    #[must_use]
+    pub fn with_walls(mut self, walls: impl IntoIterator<Item = (usize, (f64, f64))>) -> Self {
+        self.walls = walls.into_iter().collect();
+        self
+    }
+
+    /// The walls that reflect, by axes: a lower and an upper one, infinite where there is none.
+    pub fn walls(&self) -> &BTreeMap<usize, (f64, f64)> {
+        &self.walls
     }
 
     /// The family with quantities of which mean and standard deviation are wanted.
@@ -222,6 +248,7 @@ impl Family {
         path: Path,
     ) -> Result<Self, SystemError> {
         Ok(Self {
+            walls: self.walls.clone(),
             quantities: self.quantities.clone(),
             averaged: self.averaged.clone(),
             regions: self.regions.clone(),
@@ -364,7 +391,15 @@ impl Family {
     /// # Errors
     /// [`SystemError::OutOfRange`].
     pub fn at(&self, coordinate: f64) -> Result<Arc<dyn System>, SystemError> {
-        Ok(self.model.system(&self.values_at(coordinate)?))
+        Ok(self.within_walls(self.model.system(&self.values_at(coordinate)?)))
+    }
+
+    /// A system of the family's model, with the walls that reflect.
+    pub(crate) fn within_walls(&self, system: Arc<dyn System>) -> Arc<dyn System> {
+        match self.walls.is_empty() {
+            true => system,
+            false => Arc::new(Enclosed::reflecting(system, &self.walls)),
+        }
     }
 
     /// The systems at both ends and in the middle: what is chosen once for a whole sweep is chosen for these.

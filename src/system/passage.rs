@@ -9,12 +9,34 @@ pub struct PassageQuestion {
     pub name: String,
     /// The region at whose border the process ends.
     pub until: Region,
+    /// Parts of that region: the shares of the processes are wanted that end by entering each.
+    pub exits: Vec<Region>,
     /// Where the process starts.
     pub start: PassageStart,
+    /// Whether the rates between the regions of start and end are wanted, there and back.
+    pub switching: bool,
     /// Times at which the probability is wanted that the process still goes on, ascending.
     pub times: Vec<f64>,
     /// Shares of the processes, between 0 and 1, ascending: the times by which so many have ended are wanted.
     pub quantiles: Vec<f64>,
+}
+
+impl PassageQuestion {
+    /// What columns call a part of the region that ends the passage: its name, or its number from 1 on where the
+    /// question itself gives it.
+    pub fn exit_label(&self, part: usize) -> String {
+        let known = self.exits.get(part).map(Region::name);
+        let number = (part + 1).to_string();
+        match known {
+            Some(name) if name != Self::exit_name(&self.name, part) => name.to_owned(),
+            _ => number,
+        }
+    }
+
+    /// The name of a part that has none.
+    pub(crate) fn exit_name(passage: &str, part: usize) -> String {
+        format!("{passage}_until_{}", part + 1)
+    }
 }
 
 /// A level of a measure of the sweep: the values of the parameter are wanted at which the measure crosses it.

@@ -20,3 +20,4 @@ mod random_systems;
 mod sampled_passages;
 mod slow_modes;
 mod spectra;
+mod walls;

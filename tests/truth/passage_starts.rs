@@ -88,6 +88,8 @@ fn found(
     let question = PassageQuestion {
         name: "leave".to_owned(),
         until: region(&until),
+        exits: Vec::new(),
+        switching: false,
         start: match &from {
             Some(text) => PassageStart::Region(region(text)),
             None => PassageStart::Density,

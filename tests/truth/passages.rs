@@ -6,6 +6,7 @@ use std::sync::Arc;
 use pbif::cancellation::Cancellation;
 use pbif::generator::GeneratorOptions;
 use pbif::passage::{Passage, Start, Timed, WithError, timed};
+use pbif::space::{Axis, CellSpace};
 use pbif::stationary::generator::RateOptions;
 use pbif::system::{Model, regions};
 use statrs::function::gamma::gamma;
@@ -30,6 +31,7 @@ fn asked(
     let until = regions(model, &[("until", until)]).unwrap().remove(0);
     let asked = Passage {
         until: until.level().bind(&model.values(&[]).unwrap()).unwrap(),
+        exits: Vec::new(),
         start: Start::State(start.to_vec()),
         times: times.to_vec(),
         quantiles: quantiles.to_vec(),
@@ -331,4 +333,141 @@ fn the_probability_to_go_on_is_that_of_the_series() {
         (series(median) - 0.5).abs() <= 0.7 * error && error < 1e-3,
         "{median} ± {error}"
     );
+}
+
+/// The numbers of a passage from a state that several inequalities end.
+fn ended_by(
+    model: &Arc<Model>,
+    parts: &[&str],
+    start: &[f64],
+    axes: &[(f64, f64, usize)],
+) -> Timed {
+    let axes = axes
+        .iter()
+        .map(|&(from, to, count)| Axis::uniform(from, to, count).unwrap());
+    let space = CellSpace::new(axes.collect()).unwrap();
+    let values = model.values(&[]).unwrap();
+    let bound = |text: &str| {
+        let region = regions(model, &[("until", text)]).unwrap().remove(0);
+        region.level().bind(&values).unwrap()
+    };
+    let either: Vec<String> = parts.iter().map(|part| format!("({part})")).collect();
+    let asked = Passage {
+        until: bound(&either.join(" or ")),
+        exits: parts.iter().map(|part| bound(part)).collect(),
+        start: Start::State(start.to_vec()),
+        times: Vec::new(),
+        quantiles: Vec::new(),
+    };
+    let settings = (&GeneratorOptions::default(), &RateOptions::default());
+    let system = model.system_with(&[]).unwrap();
+    let never = Cancellation::new();
+    let found = timed(&system, &space, &asked, None, settings, &never).unwrap();
+    // Whatever ends, ends somewhere.
+    let whole: f64 = found.shares.iter().map(|share| share.0).sum();
+    let error: f64 = found.shares.iter().map(|share| share.1).sum();
+    println!("shares sum to {whole}, errors to {error:.1e}");
+    assert!((whole - 1.0).abs() <= error + 1e-9);
+    found
+}
+
+#[test]
+fn brownian_motion_with_drift_leaves_an_interval_by_either_end() {
+    // (1 - e^{-2 c (x - a)/s²})/(1 - e^{-2 c (b - a)/s²}) is the probability of the upper end, s² = 1/2.
+    let drifting = model(&[("x", "0.4")], &[("x", "sqrt(0.5)")]);
+    let exact = |x: f64| (-1.6 * (x + 1.0)).exp_m1() / (-1.6f64 * 2.3).exp_m1();
+    for x in [-0.9, -0.2, 1.0] {
+        let axes = [(-1.6, 1.9, 90)];
+        let found = ended_by(&drifting, &["x > 1.3", "x < -1"], &[x], &axes);
+        holds(
+            &format!("upper end from {x}"),
+            found.shares[0],
+            exact(x),
+            1e-2,
+        );
+        holds(
+            &format!("lower end from {x}"),
+            found.shares[1],
+            1.0 - exact(x),
+            2e-2,
+        );
+    }
+}
+
+#[test]
+fn ornstein_uhlenbeck_leaves_by_the_far_end_as_often_as_quadrature_says() {
+    // q' ∝ e^{x²/(2 D)}, D = 1/4.
+    let spring = model(&[("x", "-x")], &[("x", "sqrt(0.5)")]);
+    let slope = |x: f64| (2.0 * x * x).exp();
+    let integral = |from: f64, to: f64| {
+        let h = (to - from) / 20_000.0;
+        (0..20_000)
+            .map(|k| h * slope(from + (f64::from(k) + 0.5) * h))
+            .sum::<f64>()
+    };
+    let exact = |x: f64| integral(-1.0, x) / integral(-1.0, 1.7);
+    let axes = [(-1.9, 2.4, 120)];
+    for x in [-0.8, 0.0, 1.2] {
+        let found = ended_by(&spring, &["x < -1", "x > 1.7"], &[x], &axes);
+        holds(
+            &format!("far end from {x}"),
+            found.shares[1],
+            exact(x),
+            2e-2,
+        );
+    }
+}
+
+/// R. S. Maier and D. L. Stein, Physical Review E 48, 931 (1993): a drift without a potential.
+#[test]
+fn the_committor_of_maier_and_steins_system_is_that_of_paths() {
+    use pbif::monte_carlo::{PassageRun, PassageStart, PassageTarget, first_passages};
+    let equations = [("u", "u - u^3 - 10 u v^2"), ("v", "-(1 + u^2) v")];
+    let system = model(&equations, &[("u", "sqrt(0.2)"), ("v", "sqrt(0.2)")]);
+    let parts = ["(u + 1)^2 + v^2 < 0.09", "(u - 1)^2 + v^2 < 0.09"];
+    let axes = [(-1.8, 1.8, 72), (-1.2, 1.2, 60)];
+    let values = system.values(&[]).unwrap();
+    let bound = |text: &str| {
+        let region = regions(&system, &[("until", text)]).unwrap().remove(0);
+        region.level().bind(&values).unwrap()
+    };
+    let exits = parts.map(bound);
+    let until = bound(&format!("({}) or ({})", parts[0], parts[1]));
+    let space: Vec<Axis> = axes
+        .iter()
+        .map(|&(from, to, count)| Axis::uniform(from, to, count).unwrap())
+        .collect();
+    let space = CellSpace::new(space).unwrap();
+    for start in [[-0.4, 0.3], [0.1, 0.0], [0.2, -0.5]] {
+        let found = ended_by(&system, &parts, &start, &axes);
+        let run = PassageRun {
+            time_step: 0.02,
+            integrator: pbif::sampling::Integrator::StochasticHeun,
+            seed: 11,
+            paths: 40_000,
+            longest: 200.0,
+        };
+        let target = PassageTarget {
+            until: &until,
+            exits: &exits,
+        };
+        let never = Cancellation::new();
+        let paths = first_passages(
+            &*system.system_with(&[]).unwrap(),
+            &space,
+            target,
+            &PassageStart::State(&start),
+            &run,
+            &never,
+        );
+        let sampled = paths.unwrap().numbers(&[], &[])[4];
+        let (value, error) = found.shares[1];
+        println!(
+            "from {start:?}: {value:.5} ± {error:.1e}, paths {:.5} ± {:.1e}",
+            sampled.value,
+            sampled.error()
+        );
+        assert!(error < 2e-3);
+        assert!((value - sampled.value).abs() < 4.0 * sampled.error() + error);
+    }
 }

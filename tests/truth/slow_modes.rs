@@ -249,3 +249,137 @@ fn errors_hold_on_random_linear_systems() {
     println!("{all} of {asked} modes, off by at most {worst:.2} of the error");
     assert!(10 * all > 8 * asked);
 }
+
+/// The rates between two regions, there and back, of a system that asks for them in its file.
+fn between(text: &str) -> [(f64, f64); 2] {
+    use pbif::continuation::DensitySource;
+    use pbif::method::{GeneratorMethodOptions, GeneratorSource};
+    use pbif::sweep_file::SweepFile;
+    let never = Cancellation::new();
+    let sweep = SweepFile::parse("two.toml", text).validate();
+    let sweep = sweep.unwrap_or_else(|report| panic!("{report}"));
+    let sweep = sweep.prepare(&never);
+    let sweep = sweep.unwrap_or_else(|report| panic!("{report}"));
+    let options = GeneratorMethodOptions::default();
+    let source = GeneratorSource::new(&sweep.problem, &options).unwrap();
+    let from = sweep.problem.family().ends().0;
+    let report = source.open(&never).solve(from).unwrap().report;
+    ["go_switching_rate", "go_return_rate"].map(|name| {
+        let found = report.measures.iter().find(|one| one.name == name);
+        let found = found.unwrap_or_else(|| panic!("{:?}", report.findings));
+        (found.value, found.error.unwrap())
+    })
+}
+
+/// ∫ f over a range, by the midpoint rule.
+fn integral(f: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
+    let n = 4000;
+    let h = (to - from) / f64::from(n);
+    (0..n).map(|k| h * f(from + (f64::from(k) + 0.5) * h)).sum()
+}
+
+#[test]
+fn a_tilted_well_is_left_at_the_rate_of_the_slowest_mode() {
+    let rates = between(
+        r#"
+[system.equations]
+x = "x - x^3 + 0.1"
+[system.noise]
+x = "sqrt(2 D)"
+[sweep]
+parameter = "D"
+from = 0.04
+to = 0.06
+points = 2
+[cells]
+x = { from = -2.2, to = 2.4, count = 160 }
+[passage]
+go = { from = "x < -0.5", to = "x > 0.5", switching = "on" }
+"#,
+    );
+    // The mean time from one bottom to the other: the time of leaving, and of going down, which is shorter by the order
+    // of e^{-ΔU/D}. Shares are those of the probability on either side of the top.
+    let (d, u) = (0.04, |x: f64| x.powi(4) / 4.0 - x * x / 2.0 - 0.1 * x);
+    let time = |from: f64, to: f64, sign: f64| {
+        let v = |x: f64| u(sign * x);
+        let weighed = |y: f64| (v(y) / d).exp() * integral(|z| (-v(z) / d).exp(), -3.0, y);
+        integral(weighed, from, to) / d
+    };
+    let exact = [
+        1.0 / time(-0.9456, 1.0467, 1.0),
+        1.0 / time(-1.0467, 0.9456, -1.0),
+    ];
+    for ((value, error), exact) in rates.into_iter().zip(exact) {
+        println!("{value:.6e} ± {error:.1e}, by mean times {exact:.6e}");
+        assert!((value - exact).abs() < 0.02 * exact + error && error < 0.02 * value);
+    }
+    let share = |from: f64, to: f64| integral(|x| (-u(x) / d).exp(), from, to);
+    let top = -0.1010;
+    let exact = share(-3.0, top) / share(top, 3.0);
+    let [there, back] = rates;
+    let ratio = back.0 / there.0;
+    println!("shares {ratio:.6}, by quadrature {exact:.6}");
+    assert!((ratio - exact).abs() < 5e-3 * exact);
+}
+
+#[test]
+fn an_underdamped_well_is_left_as_often_as_paths_leave_it() {
+    let [there, back] = between(
+        r#"
+[system.equations]
+x = "y"
+y = "x - x^3 - g y"
+[system.noise]
+y = "sqrt(0.12 g)"
+[sweep]
+parameter = "g"
+from = 0.5
+to = 0.6
+points = 2
+[cells]
+x = { from = -2.1, to = 2.1, count = 80 }
+y = { from = -1.8, to = 1.8, count = 80 }
+[passage]
+go = { from = "y^2/2 - x^2/2 + x^4/4 < -0.1 and x < 0", to = "y^2/2 - x^2/2 + x^4/4 < -0.1 and x > 0", switching = "on" }
+"#,
+    );
+    println!(
+        "{:.5e} ± {:.1e} and back {:.5e} ± {:.1e}",
+        there.0, there.1, back.0, back.1
+    );
+    assert!((there.0 - back.0).abs() <= there.1 + back.1);
+    // Paths by the splitting of a kick between two halves of a step, counted at each other well's bottom.
+    let (step, damping, t) = (0.02, 0.5, 0.06);
+    let keep = f64::exp(-damping * step);
+    let kick = (t * (1.0 - keep * keep)).sqrt();
+    let (mut count, mut steps) = (0u32, 0u64);
+    let mut dice = Numbers(5);
+    let mut unit = move || (dice.next() >> 11) as f64 / (1u64 << 53) as f64;
+    let (mut x, mut y, mut side) = (-1.0f64, 0.0f64, -1.0f64);
+    let mut spare = None;
+    while count < 2500 {
+        let normal = spare.take().unwrap_or_else(|| {
+            let (radius, angle) = (
+                (-2.0 * (1.0 - unit()).ln()).sqrt(),
+                std::f64::consts::TAU * unit(),
+            );
+            spare = Some(radius * angle.sin());
+            radius * angle.cos()
+        });
+        y += 0.5 * step * (x - x.powi(3));
+        x += 0.5 * step * y;
+        y = keep * y + kick * normal;
+        x += 0.5 * step * y;
+        y += 0.5 * step * (x - x.powi(3));
+        steps += 1;
+        let energy = 0.5 * y * y - 0.5 * x * x + 0.25 * x.powi(4);
+        if energy < -0.2 && x * side < 0.0 {
+            side = -side;
+            count += 1;
+        }
+    }
+    let counted = f64::from(count) / (steps as f64 * step);
+    println!("counted {counted:.5e} ± {:.1e}", counted / 50.0);
+    // Two per cent of sampling, and four of what the regions are between which a path is counted.
+    assert!((there.0 - counted).abs() < (3.0 * 0.02 + 0.04) * counted);
+}

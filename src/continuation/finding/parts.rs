@@ -121,7 +121,7 @@ stored! {
 
 impl PassageFault {
     /// All of them, with their codes.
-    pub(super) const CODES: [(Self, &'static str); 8] = [
+    pub(super) const CODES: [(Self, &'static str); 9] = [
         (Self::Nowhere, "passage-nowhere"),
         (Self::Everywhere, "passage-everywhere"),
         (Self::Start, "passage-start"),
@@ -130,6 +130,7 @@ impl PassageFault {
         (Self::Unsolved, "passage-unsolved"),
         (Self::Rare, "passage-rare"),
         (Self::RunsAway, "passage-runs-away"),
+        (Self::NoSwitching, "passage-no-switching"),
     ];
 
     fn code(self) -> &'static str {

@@ -67,7 +67,8 @@ pub(super) fn add_passages(
 
 fn measures(question: &PassageQuestion, timed: &Timed) -> Vec<Measure> {
     let moments = [timed.mean, timed.deviation, timed.rate];
-    let more = timed.survival.iter().chain(&timed.quantiles);
+    let more = timed.shares.iter().chain(&timed.survival);
+    let more = more.chain(&timed.quantiles);
     measures_of_passage(question, moments.into_iter().chain(more.copied()))
 }
 

@@ -6,6 +6,7 @@
 //! second scheme's Q' = Q + δQ it is Q δu = -(δQ) u to first order. It is predicted likewise, and iterated only as far
 //! as the prediction is not good enough.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::GeneratorSource;
@@ -23,12 +24,12 @@ use super::source::METHOD;
 use super::spectra::add_spectra;
 use super::stand::Stand;
 use super::trail::{self, Trail};
-use super::unknowns::{by_schemes, distance, negative_mass, summed_over_modes};
+use super::unknowns::{by_schemes, distance, negative_mass, summed_over_modes, with_walls};
 use crate::cancellation::Cancellation;
 use crate::continuation::measure::{ESCAPE_RATE, FACTORISATIONS, NEGATIVE_MASS};
 use crate::continuation::{Measure, Solution, SolveReport};
 use crate::density::EstimatedDensity;
-use crate::generator::{Generator, cell_masses, resolution};
+use crate::generator::{Generator, cell_masses, resolution, summed_to_walls};
 use crate::method::measures::{Cells, Others};
 use crate::method::neighbours::Neighbours;
 use crate::method::report::{QUIET_ESCAPE, Reporter};
@@ -157,7 +158,7 @@ impl GeneratorSession {
         let at = (system, value);
         add_largest_exponent(report, &self.source, at, known, cancellation)?;
         let unknowns = known.map(|(unknowns, _)| unknowns);
-        add_slow_modes(report, &self.source, system, unknowns, cancellation)?;
+        add_slow_modes(report, &self.source, at, density, cancellation)?;
         add_spectra(report, &self.source, at, unknowns, cancellation)
     }
 
@@ -278,7 +279,17 @@ impl GeneratorSession {
         reporter.series(&maps.changes_by_last_modes(&self.source.problem, &masses)?);
         reporter.negative_mass(negative_mass(&summed_over_modes(space, &masses)), watched);
         let (kinked, planes) = (&self.source.kinked, planes(&self.source.kinked));
-        let of_axes = by_schemes(space, unknowns, second.unknowns(), &planes);
+        let weights = summed_to_walls(solved.system.as_ref(), space, unknowns);
+        let others = second.unknowns();
+        let others = others.map(|one| summed_to_walls(solved.system.as_ref(), space, one));
+        let of_axes = by_schemes(space, &weights, others.as_deref(), &planes);
+        let of_axes = match weights {
+            Cow::Owned(_) => {
+                let at = (solved.system.as_ref(), space);
+                with_walls(of_axes, at, (unknowns, &weights), time)
+            }
+            Cow::Borrowed(_) => of_axes,
+        };
         let of_quantities = maps.exact_moments(space, &masses, second.masses(), kinked)?;
         let moments = [of_axes, of_quantities].concat();
         reporter.moments(&moments);
@@ -291,8 +302,8 @@ impl GeneratorSession {
         let cells = Cells {
             system: solved.system.as_ref(),
             space,
-            weights: unknowns,
-            others: second.unknowns().map_or(Others::None, Others::Second),
+            weights: &weights,
+            others: others.as_deref().map_or(Others::None, Others::Second),
             planes: &planes,
             closed: &self.source.closed_ends,
             escape_rate: info.escape_rate,

@@ -4,32 +4,35 @@ use std::sync::Arc;
 
 use super::GeneratorSource;
 use crate::cancellation::Cancellation;
-use crate::continuation::{Finding, SolveReport};
-use crate::generator::GeneratorOptions;
+use crate::continuation::{Finding, PassageFault, SolveReport};
+use crate::generator::{GeneratorOptions, levels};
 use crate::method::MethodError;
-use crate::method::measures::measures_of_slow_modes;
-use crate::spectrum::{SpectrumError, Steady, slow_modes};
+use crate::method::measures::{measures_of_slow_modes, switching_measures};
+use crate::passage::KnownDensity;
+use crate::spectrum::{SlowMode, SlowModes, SpectrumError, Steady, slow_modes, switching};
 use crate::stationary::generator::{RateError, RateOptions};
-use crate::system::System;
+use crate::system::{PassageStart, Region, System};
 
 /// Error at which solves stop to be iterated, relative to their right side: well below what an eigenvalue may change
 /// by more vectors.
 const TOLERANCE: f64 = 1e-11;
 
-/// Adds the numbers of the slow modes to a report; `unknowns` are those of the steady state, where there is one.
+/// Adds the numbers of the slow modes to a report, and the rates between states that passages ask for; `density` is the
+/// steady state, where there is one.
 ///
 /// # Errors
-/// [`MethodError::Cancelled`].
+/// [`MethodError::Cancelled`], and errors of values that the family does not have.
 pub(super) fn add_slow_modes(
     report: &mut SolveReport,
     source: &GeneratorSource,
-    system: &Arc<dyn System>,
-    unknowns: Option<&[f64]>,
+    (system, value): (&Arc<dyn System>, f64),
+    density: Option<KnownDensity<'_>>,
     cancellation: &Cancellation,
 ) -> Result<(), MethodError> {
     let (subject, space) = (source.problem.subject(), source.problem.space());
     let wanted = subject.family.slow_modes();
-    if wanted == 0 || subject.measures.is_empty() {
+    let switches = subject.family.passages().iter().any(|one| one.switching);
+    if (wanted == 0 && !switches) || subject.measures.is_empty() {
         return Ok(());
     }
     let rates = RateOptions {
@@ -41,25 +44,69 @@ pub(super) fn add_slow_modes(
         scheme: source.options.scheme,
     };
     let closed = &source.closed_ends;
-    let solve = |masses| {
-        let steady = Steady { masses, closed };
-        let settings = (&generator, &rates);
+    let solve = |density: KnownDensity<'_>| {
+        let steady = Steady {
+            masses: density.unknowns,
+            closed,
+        };
+        let (settings, wanted) = ((&generator, &rates), wanted.max(1));
         slow_modes(system, space, wanted, steady, settings, cancellation)
     };
-    let known = match unknowns.map(solve) {
-        Some(Ok(found)) => {
-            report.measures.extend(measures_of_slow_modes(&found.modes));
-            found.modes.len()
-        }
+    let found = match density.map(solve) {
+        Some(Ok(found)) => Some(found),
         Some(Err(SpectrumError::Rate(RateError::Cancelled(cancelled)))) => {
             return Err(cancelled.into());
         }
-        Some(Err(_)) | None => 0,
+        Some(Err(_)) | None => None,
     };
-    if known < wanted {
+    let told = found.iter().flat_map(|found| &found.modes).take(wanted);
+    let told: Vec<SlowMode> = told.copied().collect();
+    report.measures.extend(measures_of_slow_modes(&told));
+    if told.len() < wanted {
+        let known = told.len();
         report
             .findings
             .push(Finding::FewSlowModes { known, wanted });
+    }
+    add_switching(report, source, value, found.as_ref().zip(density))
+}
+
+/// Adds the rates between states that passages ask for, from the slow modes and the steady state.
+fn add_switching(
+    report: &mut SolveReport,
+    source: &GeneratorSource,
+    value: f64,
+    known: Option<(&SlowModes, KnownDensity<'_>)>,
+) -> Result<(), MethodError> {
+    let (family, space) = (source.problem.family(), source.problem.space());
+    let values = family.values_at(value)?;
+    for (passage, question) in family.passages().iter().enumerate() {
+        let PassageStart::Region(from) = &question.start else {
+            continue;
+        };
+        if !question.switching {
+            continue;
+        }
+        let level = |region: &Region| -> Result<Vec<f64>, MethodError> {
+            let bound = region.level().bind(&values)?;
+            // A level without a value has no inside.
+            Ok(levels(space, &bound).unwrap_or_else(|_| vec![0.0; space.n_cells()]))
+        };
+        let (first, second) = (level(from)?, level(&question.until)?);
+        let rates = known.and_then(|(modes, density)| {
+            let steady = (density.unknowns, density.changes);
+            switching(modes, steady, [&first, &second])
+        });
+        match rates {
+            Some(rates) => {
+                let both = [rates.there, rates.back];
+                report.measures.extend(switching_measures(question, both));
+            }
+            None => report.findings.push(Finding::NoPassage {
+                passage,
+                fault: PassageFault::NoSwitching,
+            }),
+        }
     }
     Ok(())
 }

@@ -13,14 +13,14 @@ use crate::method::watched::Masses;
 use crate::method::{MethodError, Problem, has_densities};
 use crate::space::CellSpace;
 use crate::stationary::generator::{RateOptions, RateSolver};
-use crate::system::{Enclosed, Model, ParameterValues, SwitchingSurface, System, SystemError};
+use crate::system::{Enclosed, Family, ParameterValues, SwitchingSurface, System, SystemError};
 
 /// Name of the method in tables.
 pub(super) const METHOD: &str = "generator";
 
 /// Systems that differ in one parameter alone.
 pub(super) struct Varied {
-    model: Arc<Model>,
+    family: Family,
     values: ParameterValues,
     name: String,
     /// The value of the parameter about which it is varied.
@@ -30,8 +30,9 @@ pub(super) struct Varied {
 impl Varied {
     /// The system at a value of the parameter.
     pub(super) fn at(&self, value: f64) -> Result<Arc<dyn System>, SystemError> {
-        let values = self.model.with(&self.values, &self.name, value)?;
-        Ok(self.model.system(&values))
+        let model = self.family.model();
+        let values = model.with(&self.values, &self.name, value)?;
+        Ok(self.family.within_walls(model.system(&values)))
     }
 }
 
@@ -101,12 +102,12 @@ impl GeneratorSource {
     /// The systems beside a value of the path that differ in a named parameter alone.
     pub(super) fn varied(&self, coordinate: f64, name: &str) -> Result<Varied, MethodError> {
         let family = self.problem.family();
-        let model = family.model().clone();
+        let model = family.model();
         let values = family.values_at(coordinate)?;
         Ok(Varied {
             value: values.as_slice()[model.parameter_index(name)?],
             name: name.to_owned(),
-            model,
+            family: family.clone(),
             values,
         })
     }

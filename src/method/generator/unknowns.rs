@@ -4,6 +4,7 @@ use crate::density::{EstimatedMoments, Moments, Roughness};
 use crate::generator::unknown_moments;
 use crate::method::watched::differences;
 use crate::space::CellSpace;
+use crate::system::System;
 
 /// Masses of the cells of the other axes. The values at the nodes of a series, which may be negative where the density
 /// is nothing, are the masses of no cells.
@@ -62,6 +63,76 @@ pub(super) fn by_schemes(
         EstimatedMoments::by_difference(own, std::slice::from_ref(other)).with(more)
     });
     estimated.collect()
+}
+
+/// Moments of sums that end at walls, with the error of the cells there: fluxes beside a wall are of second order.
+///
+/// So is what the sums change that do not end at walls, which is taken for the error of both moments. Along an axis
+/// without walls the equations say more: d⟨y⟩/dt and d⟨y²⟩/dt are zero, and what is left of them over a relaxation
+/// time is an error too.
+pub(super) fn with_walls(
+    all: Vec<EstimatedMoments>,
+    (system, space): (&dyn System, &CellSpace),
+    (unknowns, weights): (&[f64], &[f64]),
+    relaxation: Option<f64>,
+) -> Vec<EstimatedMoments> {
+    let left = left_of_balances(&all, (system, space), weights);
+    let pairs = all.into_iter().zip(moments_of(space, unknowns)).zip(left);
+    let wider = pairs.enumerate().map(|(axis, ((own, plain), left))| {
+        let is_walled = system.facts().reflecting.contains_key(&axis);
+        let [mean, square] = match is_walled {
+            true => [0.0; 2],
+            false => left.over(relaxation),
+        };
+        let deviation = own.moments.standard_deviation;
+        own.with(Moments {
+            mean: (own.moments.mean - plain.mean).abs() + mean,
+            standard_deviation: (deviation - plain.standard_deviation).abs()
+                + 0.5 * square / deviation.max(f64::MIN_POSITIVE),
+        })
+    });
+    wider.collect()
+}
+
+/// What is left of the balance of an axis, and how fast its coordinate moves over the range that it takes.
+#[derive(Default, Clone, Copy)]
+struct Left {
+    mean: f64,
+    square: f64,
+    rate: f64,
+}
+
+impl Left {
+    /// Errors of mean and variance, for a relaxation time that is known or else for the axis's own.
+    fn over(self, relaxation: Option<f64>) -> [f64; 2] {
+        let time = relaxation.unwrap_or(1.0 / self.rate);
+        [self.mean.abs() * time, 0.5 * self.square.abs() * time]
+    }
+}
+
+/// ⟨f⟩ and ⟨2 (y - m) f + b²⟩ of every axis y of drift f and noise b, with the rate √(⟨f²⟩/⟨(y - m)²⟩).
+fn left_of_balances(
+    all: &[EstimatedMoments],
+    (system, space): (&dyn System, &CellSpace),
+    weights: &[f64],
+) -> Vec<Left> {
+    let total: f64 = weights.iter().sum();
+    let mut left = vec![Left::default(); space.dimension()];
+    for (cell, weight) in weights.iter().enumerate() {
+        let (state, share) = (space.node(cell), weight / total);
+        let drift = system.drift_at(0.0, &state);
+        for (axis, one) in left.iter_mut().enumerate() {
+            let aside = state[axis] - all[axis].moments.mean;
+            let noise = system.intensity_at(axis, 0.0, &state);
+            one.mean += share * drift[axis];
+            one.square += share * (2.0 * aside * drift[axis] + noise);
+            one.rate += share * drift[axis] * drift[axis];
+        }
+    }
+    for (one, known) in left.iter_mut().zip(all) {
+        one.rate = one.rate.max(0.0).sqrt() / known.moments.standard_deviation;
+    }
+    left
 }
 
 /// The moments alone.

@@ -8,8 +8,8 @@ mod rotation;
 mod slow_modes;
 mod spectra;
 
-pub(super) use passage::measures as measures_of_passage;
 pub(crate) use passage::passage_columns;
+pub(super) use passage::{measures as measures_of_passage, switching_measures};
 pub(super) use slow_modes::measures as measures_of_slow_modes;
 pub(super) use spectra::measures as measures_of_spectrum;
 

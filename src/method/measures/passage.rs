@@ -1,7 +1,8 @@
 //! Times of first passage that a family asks for, as columns.
 
 use crate::continuation::measure::{
-    PASSAGE_DEVIATION, PASSAGE_MEAN, PASSAGE_QUANTILE, PASSAGE_RATE, PASSAGE_SURVIVAL,
+    PASSAGE_BACK, PASSAGE_DEVIATION, PASSAGE_MEAN, PASSAGE_QUANTILE, PASSAGE_RATE, PASSAGE_SHARE,
+    PASSAGE_SURVIVAL, PASSAGE_THERE,
 };
 use crate::continuation::{Measure, MeasureColumn, MeasureKind};
 use crate::passage::WithError;
@@ -12,19 +13,48 @@ pub(crate) fn passage_columns(family: &Family) -> Vec<MeasureColumn> {
     family.passages().iter().flat_map(columns).collect()
 }
 
-/// The columns of a passage: mean, standard deviation, rate, probabilities and quantiles.
+/// The columns of a passage: mean, standard deviation, rate, shares of exits, probabilities and quantiles.
 pub(in crate::method) fn columns(question: &PassageQuestion) -> Vec<MeasureColumn> {
     let column = |kind: MeasureKind, of: String| MeasureColumn { kind, of };
     let name = &question.name;
     let moments = [PASSAGE_MEAN, PASSAGE_DEVIATION, PASSAGE_RATE];
     let moments = moments.map(|kind| column(kind, name.clone()));
     let at = |kind, number: &f64| column(kind, format!("{name}_{number}"));
+    let exits = (0..question.exits.len()).map(|part| {
+        let label = question.exit_label(part);
+        column(PASSAGE_SHARE, format!("{name}_{label}"))
+    });
     let times = question.times.iter().map(|time| at(PASSAGE_SURVIVAL, time));
     let shares = question
         .quantiles
         .iter()
         .map(|share| at(PASSAGE_QUANTILE, share));
-    moments.into_iter().chain(times).chain(shares).collect()
+    let moments = moments.into_iter().chain(exits);
+    let numbers = moments.chain(times).chain(shares);
+    numbers.chain(rates_between(question)).collect()
+}
+
+/// The columns of the rates between two states.
+fn rates_between(question: &PassageQuestion) -> impl Iterator<Item = MeasureColumn> {
+    let both = [PASSAGE_THERE, PASSAGE_BACK].into_iter();
+    both.filter(|_| question.switching)
+        .map(|kind| MeasureColumn {
+            kind,
+            of: question.name.clone(),
+        })
+}
+
+/// The rates between two states as measures, there and back.
+pub(in crate::method) fn switching_measures(
+    question: &PassageQuestion,
+    rates: [WithError; 2],
+) -> Vec<Measure> {
+    let pairs = rates_between(question).zip(rates);
+    let one = |(column, (value, error)): (MeasureColumn, WithError)| Measure {
+        error: Some(error),
+        ..column.kind.measure(&column.of, value)
+    };
+    pairs.map(one).collect()
 }
 
 /// The numbers of a passage as measures, from the order of its columns.

@@ -6,7 +6,8 @@ use crate::continuation::{Finding, PassageFault, SolveReport};
 use crate::method::measures::measures_of_passage;
 use crate::method::{MethodError, Problem, StepChoice};
 use crate::monte_carlo::{
-    ExitNumber, ExitTimes, MonteCarloError, PassageRun, PassageStart, SteadyStart, first_passages,
+    ExitNumber, ExitTimes, MonteCarloError, PassageRun, PassageStart, PassageTarget, SteadyStart,
+    first_passages,
 };
 use crate::passage::{Passage, Start};
 use crate::system::System;
@@ -97,7 +98,11 @@ impl Setting<'_> {
             longest: options.longest_passage.or(|| affordable),
         };
         loop {
-            let found = first_passages(system, space, &asked.until, &start, &run, cancellation);
+            let target = PassageTarget {
+                until: &asked.until,
+                exits: &asked.exits,
+            };
+            let found = first_passages(system, space, target, &start, &run, cancellation);
             let times = match found {
                 Err(MonteCarloError::NoStart) => return Ok(Err(PassageFault::Start)),
                 found => found?,

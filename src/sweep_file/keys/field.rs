@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::super::draft::{Auto, Draft, ExponentKind, MethodKind, Modes};
+use super::super::draft::{Auto, Draft, EndKind, ExponentKind, MethodKind, Modes};
 use super::super::value::Plain;
 use crate::figure::{ColourMap, ColourScale, FigureWidth, Format, Ground, Typeface};
 use crate::generator::AdvectiveScheme;
@@ -325,17 +325,36 @@ macro_rules! of_axis {
 /// The word for an axis that closes on itself after 2π.
 pub(super) const PERIODIC: &str = "periodic";
 
-/// Bounds of an axis: two formulas, or the word for an angle.
+/// What happens at both ends of an axis, where that is said in words.
+pub(super) fn ends_of(plain: &Plain) -> Option<[EndKind; 2]> {
+    let kind = |plain: &Plain| EndKind::named(plain.text()?);
+    match plain.items() {
+        Some([lower, upper]) => Some([kind(lower)?, kind(upper)?]),
+        Some(_) => None,
+        None => kind(plain).map(|both| [both; 2]),
+    }
+}
+
+/// Bounds of an axis: two formulas, or words for its ends, or the word for an angle.
 pub(super) const BOUNDS: Field = Field {
     get: |draft, name| {
         let angle = draft.equations.angle(name);
         let word = angle.filter(|period| *period == std::f64::consts::TAU);
         let word = word.map(|_| Plain::Text(PERIODIC.to_owned()));
-        formulas_of(&draft.equations.bounds, name).or(word)
+        let mut ends = draft.equations.ends.iter();
+        let ends = ends.find(|(known, _)| known == name);
+        let ends = ends.map(|(_, ends)| {
+            Plain::List(ends.map(|end| Plain::Text(end.name().to_owned())).into())
+        });
+        formulas_of(&draft.equations.bounds, name).or(ends).or(word)
     },
-    set: |draft, name, plain| match plain.text() {
-        Some(_) => draft.equations.set_angle(name, std::f64::consts::TAU),
-        None => set_formulas(&mut draft.equations.bounds, name, plain),
+    set: |draft, name, plain| match (ends_of(plain), plain.text()) {
+        (Some(ends), _) => {
+            draft.equations.ends.retain(|(known, _)| known != name);
+            draft.equations.ends.push((name.to_owned(), ends));
+        }
+        (None, Some(_)) => draft.equations.set_angle(name, std::f64::consts::TAU),
+        (None, None) => set_formulas(&mut draft.equations.bounds, name, plain),
     },
 };
 
@@ -374,6 +393,22 @@ macro_rules! of_bins {
         }
     };
 }
+
+/// What ends a passage: one region, or several.
+pub(super) const UNTIL: Field = Field {
+    get: |draft, name| {
+        let passage = draft.passage(name)?;
+        let several = passage.exits.as_ref().map(Formulas::written);
+        several.or(passage.until.as_ref().map(Formulas::written))
+    },
+    set: |draft, name, plain| {
+        let passage = draft.passage_mut(name);
+        match plain.items() {
+            Some(_) => passage.exits = Vec::read(plain),
+            None => passage.until = plain.text().map(str::to_owned),
+        }
+    },
+};
 
 /// A field of a passage.
 macro_rules! of_passage {

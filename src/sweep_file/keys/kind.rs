@@ -2,7 +2,7 @@
 
 use super::super::names::list;
 use super::super::value::Plain;
-use super::field::{AUTO, PERIODIC};
+use super::field::{AUTO, PERIODIC, ends_of};
 use crate::figure::FigureWidth;
 
 /// Condition on a number, in words and as a test. Numbers are always finite.
@@ -93,8 +93,10 @@ pub(in crate::sweep_file) enum Kind {
     Formula,
     /// A formula, or a list of formulas.
     Formulas,
-    /// Two formulas, or the word for an angle.
+    /// Two formulas, or what happens at both ends, or the word for an angle.
     Bounds,
+    /// A string, or a list of some.
+    Regions,
     /// A list of values of one kind.
     List(&'static Self),
 }
@@ -124,7 +126,10 @@ impl Kind {
             Self::Formulas => {
                 "a formula, such as `\"sqrt(2 D)\"`, or a list of formulas".to_owned()
             }
-            Self::Bounds => "two formulas, such as `[\"-a\", \"a\"]`, or `\"periodic\"`".to_owned(),
+            Self::Bounds => "two formulas, such as `[\"-a\", \"a\"]`, or `\"periodic\"`, or `\"reflecting\"`, or `[\"reflecting\", \"open\"]`".to_owned(),
+            Self::Regions => {
+                "a string, such as `\"abs(x) > 2\"`, or a list of strings".to_owned()
+            }
             Self::List(Self::Number(condition)) => {
                 let words = condition.words;
                 format!("a list of finite numbers{words}, such as `[0.25, 0.5]`")
@@ -174,7 +179,11 @@ impl Kind {
                 Some(items) => {
                     items.len() == 2 && items.iter().all(|item| Self::Formula.holds(item))
                 }
-                None => plain.text() == Some(PERIODIC),
+                None => plain.text() == Some(PERIODIC) || ends_of(plain).is_some(),
+            },
+            Self::Regions => match plain.items() {
+                Some(items) => !items.is_empty() && items.iter().all(|item| item.text().is_some()),
+                None => plain.text().is_some(),
             },
             Self::List(kind) => plain
                 .items()

@@ -1,8 +1,8 @@
 //! Every key of a sweep file, declared once: path, kind of value, default, meaning, and where the value lives.
 
 use super::field::{
-    BOUNDS, Field, InFile, Named, PERIOD, SWITCH, always, formulas, of_axis, of_bins, of_methods,
-    of_passage, optional,
+    BOUNDS, Field, InFile, Named, PERIOD, SWITCH, UNTIL, always, formulas, of_axis, of_bins,
+    of_methods, of_passage, optional,
 };
 use super::kind::{
     ANY, DPI, Kind, LINE, NOT_NEGATIVE, OPEN_UNIT, POSITIVE, SHARE, STEP, TEXT, UP_TO_ONE,
@@ -63,7 +63,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("system.define.<name>", Kind::Formula, Rule("nothing"), formulas!(define),
         "A formula that others may use by this name."),
     key("system.bounds.<axis>", Kind::Bounds, Rule("none"), BOUNDS,
-        "Lower and upper value that an axis never leaves, as formulas of parameters; or `periodic` for an angle, which comes back after 2π (docs/angles.md)."),
+        "Lower and upper value that an axis never leaves, as formulas of parameters; or `periodic` for an angle, which comes back after 2π (docs/angles.md); or `reflecting`, for both ends of its cells or as `[\"reflecting\", \"open\"]` for one: a wall there, at which noise and drift turn back (docs/formulas.md)."),
     key("system.bounds.<axis>.period", Kind::Number(POSITIVE), Rule("2π for an axis that is `periodic`"), PERIOD,
         "Period of an angle that is not measured in radians: `theta = { period = 1.0 }`."),
     key("system.parameters.<parameter>", Kind::Number(ANY), Rule("the model's default, where it has one"),
@@ -213,10 +213,12 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
             },
         },
         "A state in which a passage starts: a coordinate for every axis."),
-    key("passage.<passage>.until", Kind::Text, Rule("`to`"), of_passage!(until),
-        "The region at whose border a passage ends: a name, or an inequality such as `abs(x) > 2`. How long that takes is told in `points.csv`, with errors (docs/passage.md)."),
+    key("passage.<passage>.until", Kind::Regions, Rule("`to`"), UNTIL,
+        "The region at whose border a passage ends: a name, or an inequality such as `abs(x) > 2`. How long that takes is told in `points.csv`, with errors (docs/passage.md). Of several, `[\"x > 2\", \"x < -2\"]`, any ends it, and the share of each is told."),
     key("passage.<passage>.to", Kind::Text, Rule("`until`"), of_passage!(to),
         "Another word for `until`, which goes with `from`: `exit = { from = \"left\", to = \"right\" }`."),
+    key("passage.<passage>.switching", Kind::Choice(switch), Rule("`off`"), of_passage!(switching),
+        "Whether the rates from the region `from` to the region `to` and back are wanted as the slowest mode has them (docs/passage.md)."),
     key("passage.<passage>.times", Kind::List(&Kind::Number(POSITIVE)), Rule("none"), of_passage!(times),
         "Times at which the probability is wanted that a passage still goes on."),
     key("passage.<passage>.quantiles", Kind::List(&Kind::Number(OPEN_UNIT)), Rule("none"), of_passage!(quantiles),

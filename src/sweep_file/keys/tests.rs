@@ -118,6 +118,7 @@ fn example(key: &Key) -> crate::sweep_file::value::Plain {
         Kind::Formula => text("2 x"),
         Kind::Formulas => Plain::List(vec![text("sqrt(D)")]),
         Kind::Bounds => Plain::List(vec![text("-a"), text("a")]),
+        Kind::Regions => Plain::List(vec![text("x > 2"), text("x < -2")]),
         Kind::List(_) => unreachable!(),
     };
     match key.kind {

@@ -4,7 +4,7 @@ use super::passages::DENSITY;
 use super::{AxisSettings, Grade, Settings};
 use crate::density::Observable;
 use crate::sweep_file::draft::{
-    Auto, AxisDraft, BinsDraft, CurveDraft, Draft, EquationsDraft, ExponentKind, MapDraft,
+    Auto, AxisDraft, BinsDraft, CurveDraft, Draft, EndKind, EquationsDraft, ExponentKind, MapDraft,
     PassageDraft,
 };
 use crate::system::{Model, NoiseKind, PassageStart, Region};
@@ -30,7 +30,7 @@ impl Settings {
             title: Some(self.title.clone()),
             model: (!is_typed).then(|| model.clone()),
             noise_kind: (model.noise_kind() != NoiseKind::White).then(|| model.noise_kind()),
-            equations: equations_draft(model),
+            equations: self.equations_draft(),
             parameters: parameters.collect(),
             parameter: Some(parameter.to_owned()),
             from: Some(from),
@@ -62,6 +62,23 @@ impl Settings {
             locate: self.locate.clone(),
             figures_at: Some(self.figures.at.clone()),
             figures: self.figures.clone(),
+        }
+    }
+
+    /// The equations of the model, where it is made of some, with what happens at the ends of cells.
+    fn equations_draft(&self) -> EquationsDraft {
+        let end = |wall: f64| match wall.is_finite() {
+            true => EndKind::Reflecting,
+            false => EndKind::Open,
+        };
+        let walls = self.family.walls().iter();
+        let ends = walls.map(|(&axis, &(from, to))| {
+            let name = self.family.axis(axis).to_owned();
+            (name, [end(from), end(to)])
+        });
+        EquationsDraft {
+            ends: ends.collect(),
+            ..equations_draft(self.family.model())
         }
     }
 
@@ -151,7 +168,8 @@ impl Settings {
                 PassageStart::Density => Some(DENSITY.to_owned()),
             },
             to: None,
-            until: Some(named(&one.until)),
+            until: one.exits.is_empty().then(|| named(&one.until)),
+            exits: (!one.exits.is_empty()).then(|| one.exits.iter().map(named).collect()),
             start: match &one.start {
                 PassageStart::State(state) => {
                     let pairs = axes.iter().zip(state);
@@ -159,6 +177,7 @@ impl Settings {
                 }
                 _ => Vec::new(),
             },
+            switching: one.switching.then_some(true),
             times: (!one.times.is_empty()).then(|| one.times.clone()),
             quantiles: (!one.quantiles.is_empty()).then(|| one.quantiles.clone()),
         });
@@ -234,6 +253,7 @@ fn equations_draft(model: &Model) -> EquationsDraft {
         bounds: bounds
             .map(|(axis, lower, upper)| (axis, [lower, upper]))
             .collect(),
+        ends: Vec::new(),
         angles: source.angles().to_vec(),
     }
 }

@@ -22,6 +22,7 @@ mod spectrum;
 mod system;
 #[cfg(test)]
 mod tests;
+mod walls;
 mod watched;
 
 use crate::continuation::LocateOptions;
@@ -127,6 +128,7 @@ impl Settings {
         };
         let family = swept.family.with_quantities(watched.quantities);
         swept.family = family.with_averaged(watched.averaged);
+        swept.family = walls::read(&mut reader, &draft, swept.family, &axes);
         let (regions, questions) = passages::read(&mut reader, &draft, swept.family.model());
         swept.family = swept.family.with_passages(regions, questions);
         swept.family = exponent::read(&mut reader, &draft, swept.family);

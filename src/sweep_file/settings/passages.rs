@@ -16,6 +16,8 @@ struct Given {
     name: String,
     text: String,
     place: Place,
+    /// Whether it is made of others, which say what is wrong with them.
+    is_joined: bool,
 }
 
 /// Checks `[regions]` and `[passage]`: the regions with names, and the questions.
@@ -31,6 +33,7 @@ pub(super) fn read(
                 name: name.clone(),
                 text: text.clone(),
                 place: entry.node.place.clone(),
+                is_joined: false,
             });
         }
     }
@@ -45,7 +48,7 @@ pub(super) fn read(
             refuse(reader, &passage.name, title, remedy);
             continue;
         }
-        if let Some(ends) = ends(reader, passage, &mut given, model) {
+        if let Some(ends) = ends(reader, (draft, passage), &mut given, model) {
             asked.push((passage, ends));
         }
     }
@@ -56,7 +59,10 @@ pub(super) fn read(
     let read = match regions(model, &texts) {
         Ok(read) => read,
         Err(errors) => {
-            for error in errors {
+            let own = errors
+                .into_iter()
+                .filter(|error| !given[error.index].is_joined);
+            for error in own {
                 let diagnostic = diagnostic(reader, &given[error.index], &error);
                 reader.report(diagnostic);
             }
@@ -65,14 +71,16 @@ pub(super) fn read(
     };
     let questions = asked
         .into_iter()
-        .map(|(passage, (until, start))| PassageQuestion {
+        .map(|(passage, (until, exits, start))| PassageQuestion {
             name: passage.name.clone(),
             until: read[until].clone(),
+            exits: exits.into_iter().map(|part| read[part].clone()).collect(),
             start: match start {
                 GivenStart::State(state) => PassageStart::State(state),
                 GivenStart::Region(region) => PassageStart::Region(read[region].clone()),
                 GivenStart::Density => PassageStart::Density,
             },
+            switching: passage.switching == Some(true),
             times: ascending(passage.times.as_ref()),
             quantiles: ascending(passage.quantiles.as_ref()),
         });
@@ -117,12 +125,22 @@ enum GivenStart {
 /// The region that ends a passage, and its start; `None` where something is missing or said twice.
 fn ends(
     reader: &mut Reader<'_>,
-    passage: &PassageDraft,
+    (draft, passage): (&Draft, &PassageDraft),
     given: &mut Vec<Given>,
     model: &Model,
-) -> Option<(usize, GivenStart)> {
+) -> Option<(usize, Vec<usize>, GivenStart)> {
     let name = passage.name.as_str();
-    let (word, until) = match (&passage.until, &passage.to) {
+    let mut exits = Vec::new();
+    // Any of several regions ends the passage.
+    let either = passage.exits.as_ref().map(|parts| {
+        let texts = parts.iter().enumerate().map(|(part, text)| {
+            let own = PassageQuestion::exit_name(name, part);
+            exits.push(region(reader, given, name, ("until", own), text));
+            format!("({text})")
+        });
+        texts.collect::<Vec<_>>().join(" or ")
+    });
+    let (word, until) = match (either.as_ref().or(passage.until.as_ref()), &passage.to) {
         (Some(until), None) => ("until", until),
         (None, Some(to)) => ("to", to),
         (until, _) => {
@@ -139,10 +157,14 @@ fn ends(
             return None;
         }
     };
-    let until = region(reader, given, name, word, until);
+    let until = region(reader, given, name, (word, format!("{name}_{word}")), until);
+    given[until].is_joined |= either.is_some();
     let start = match (&passage.from, passage.start.is_empty()) {
         (Some(from), true) if from.trim() == DENSITY => GivenStart::Density,
-        (Some(from), true) => GivenStart::Region(region(reader, given, name, "from", from)),
+        (Some(from), true) => {
+            let own = ("from", format!("{name}_from"));
+            GivenStart::Region(region(reader, given, name, own, from))
+        }
         (None, false) => GivenStart::State(state(reader, passage, model)?),
         (from, _) => {
             let title = match from {
@@ -157,7 +179,37 @@ fn ends(
             return None;
         }
     };
-    Some((until, start))
+    if passage.switching == Some(true) && !may_switch(reader, draft, passage, &start) {
+        return None;
+    }
+    Some((until, exits, start))
+}
+
+/// Whether rates between two states can be asked for: by the generator, of a passage between regions.
+fn may_switch(
+    reader: &mut Reader<'_>,
+    draft: &Draft,
+    passage: &PassageDraft,
+    start: &GivenStart,
+) -> bool {
+    let name = passage.name.as_str();
+    if draft.method.kind != MethodKind::Generator {
+        let method = draft.method.kind.name();
+        let title =
+            format!("rates between states are worked out by `generator`, not by `{method}`");
+        let remedy = "set `method.kind = \"generator\"`, or leave `switching` out";
+        refuse(reader, name, title, remedy);
+        return false;
+    }
+    if !matches!(start, GivenStart::Region(_)) || passage.exits.is_some() {
+        let title =
+            format!("passage `{name}` has `switching`, and is not from one region to another");
+        let remedy =
+            "give the two states as `from` and `to`: regions, such as `from = \"x < -0.5\"`";
+        refuse(reader, name, title, remedy);
+        return false;
+    }
+    true
 }
 
 /// The number of a region that a passage names, or gives as an inequality.
@@ -165,7 +217,7 @@ fn region(
     reader: &Reader<'_>,
     given: &mut Vec<Given>,
     passage: &str,
-    word: &str,
+    (word, name): (&str, String),
     text: &str,
 ) -> usize {
     if let Some(known) = given.iter().position(|one| one.name == text.trim()) {
@@ -174,9 +226,10 @@ fn region(
     let place = reader.place(&["passage", passage, word]);
     let whole = &reader.document().root.place;
     given.push(Given {
-        name: format!("{passage}_{word}"),
+        name,
         text: text.to_owned(),
         place: place.unwrap_or(whole).clone(),
+        is_joined: false,
     });
     given.len() - 1
 }

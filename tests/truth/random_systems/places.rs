@@ -5,7 +5,7 @@
 //! no density. Or it is an oscillator y' = -κ(x) y - V'(x) + θ + √(2 κ(x) T) ξ. V is as in `gibbs`; cells are 30 to 120
 //! an axis, and ranges too wide, right, or too narrow.
 
-use super::gibbs::{axes, in_words, of_potential, slope};
+use super::gibbs::{Slope, axes, in_words, of_potential, slope};
 use super::*;
 
 /// Noise on both axes, along x of an intensity that waves.
@@ -111,7 +111,7 @@ fn hills(seed: u64) -> Option<Case> {
     let (mut case, text) = of_potential("both axes, wells at random places", of, t);
     let (from, to) = (case.axes[0].from(), case.axes[0].to());
     let reach = a.abs() + (64.0 * t / k).sqrt();
-    case.axes = axes(&mut dice, [(from, to), (-reach, reach)])?;
+    case.axes = axes(&mut dice, [(from, to), (-reach, reach)], 120)?;
     let along_y = format!("({k} (y - ({a}) tanh(x)))");
     let along_x = format!("({text} - theta - ({a}) (1 - tanh(x)^2) {along_y})");
     let equations = [
@@ -127,7 +127,7 @@ fn hills(seed: u64) -> Option<Case> {
         .with_parameters(["theta"])
         .build()
         .unwrap();
-    case.words = told(&case, &equations);
+    case.words = in_words(&case, &equations, "");
     case.points = 17;
     Some(case)
 }

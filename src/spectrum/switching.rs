@@ -1,0 +1,92 @@
+//! Rates between two states from the slowest mode.
+//!
+//! Where two states exchange probability much more slowly than each settles, the slowest mode is that exchange: its
+//! decay rate λ is the sum of the rates there and back, and its left vector is flat in each state, at l_A and l_B.
+//! With Σ l p = 0 the shares of the states are π_A = -l_B/(l_A - l_B) and π_B = 1 - π_A; the rate from A to B is λ
+//! π_B. No border between the states has a part in that, and paths that come to one and turn round at once count for
+//! nothing.
+
+use super::{SlowModes, dot};
+
+/// Largest variance of the left vector inside the states, over the square of their distance, up to which there are two.
+const TWO_STATES: f64 = 0.1;
+
+/// Rates between two states, per unit of time, each with its error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Switching {
+    /// From the first to the second.
+    pub there: (f64, f64),
+    /// Back.
+    pub back: (f64, f64),
+}
+
+/// Average and variance of the left vector in a state.
+struct Plateau {
+    height: f64,
+    variance: f64,
+}
+
+impl Plateau {
+    fn new(left: &[f64], unknowns: &[f64], levels: &[f64]) -> Option<Self> {
+        let inside = || {
+            left.iter()
+                .zip(unknowns)
+                .zip(levels)
+                .filter(|(_, level)| **level < 0.0)
+        };
+        let sum = |power: i32, about: f64| -> f64 {
+            let terms = inside().map(|((left, mass), _)| mass * (left - about).powi(power));
+            terms.sum()
+        };
+        let mass = sum(0, 0.0);
+        let height = sum(1, 0.0) / mass;
+        let variance = sum(2, height) / mass;
+        (mass > 0.0 && height.is_finite()).then_some(Self {
+            height,
+            variance: variance.max(0.0),
+        })
+    }
+}
+
+/// The rates between two states, regions with these levels (negative inside) at the cells, from the modes and the
+/// unknowns of the steady state, with what those of a second discretisation differ by. `None` where the slowest mode
+/// is no exchange between them: it oscillates, or its left vector is not flat in each, or has one height in both.
+///
+/// The error holds that of the decay rate, what the second discretisation changes of the shares, and the variance of
+/// the left vector inside the states: by so much of it the mode is not an exchange of two states.
+pub fn switching(
+    modes: &SlowModes,
+    (unknowns, changes): (&[f64], Option<&[f64]>),
+    [first, second]: [&[f64]; 2],
+) -> Option<Switching> {
+    let (slowest, left) = (modes.modes.first()?, modes.left.as_slice());
+    if left.len() != unknowns.len() {
+        return None;
+    }
+    let [one, other] = [first, second].map(|levels| Plateau::new(left, unknowns, levels));
+    let (one, other) = (one?, other?);
+    let distance = one.height - other.height;
+    let spread = (one.variance + other.variance) / (distance * distance);
+    let whole: f64 = unknowns.iter().sum();
+    let mean = dot(left, unknowns) / whole;
+    let share = (mean - other.height) / distance;
+    // What is outside of both may be anywhere between.
+    if !(spread <= TWO_STATES && (0.0..=1.0).contains(&share)) {
+        return None;
+    }
+    let change = changes.map_or(0.0, |changes| {
+        let about: Vec<f64> = left.iter().map(|value| value - mean).collect();
+        (dot(&about, changes) / whole / distance).abs()
+    });
+    let (decay, error) = slowest.decay;
+    let rate = |share: f64| {
+        (
+            decay * share,
+            error * share + decay * (change + spread * share),
+        )
+    };
+    Some(Switching {
+        there: rate(1.0 - share),
+        back: rate(share),
+    })
+}

@@ -1,0 +1,95 @@
+//! Walls at the ends of cells, at which the process is reflected (`[system.bounds] x = ["reflecting", "open"]`).
+
+use super::AxisSettings;
+use crate::sweep_file::diagnostic::Diagnostic;
+use crate::sweep_file::draft::{Draft, EndKind, MethodKind};
+use crate::sweep_file::reader::Reader;
+use crate::system::Family;
+
+/// The family between the walls that a file names, which stand where cells end.
+pub(super) fn read(
+    reader: &mut Reader<'_>,
+    draft: &Draft,
+    family: Family,
+    axes: &[AxisSettings],
+) -> Family {
+    let mut walls = Vec::new();
+    for (name, ends) in &draft.equations.ends {
+        // An axis that the system does not have.
+        let known = family.model().axes.iter();
+        let Some(axis) = known.clone().position(|axis| axis.name == *name) else {
+            let title = format!("the system has no axis `{name}`");
+            let nearest = known.map(|axis| axis.name.as_str());
+            let found = Diagnostic::new(title).nearest(name, nearest);
+            refuse(reader, name, found);
+            continue;
+        };
+        if let Some(found) = fault(draft, &family, (axis, name), ends, axes[axis].range) {
+            refuse(reader, name, found);
+            continue;
+        }
+        let [lower, upper] = ends.map(|end| end == EndKind::Reflecting);
+        let Some((from, to)) = axes[axis].range.filter(|_| lower || upper) else {
+            continue;
+        };
+        let wall = |is_wall: bool, at: f64, none: f64| if is_wall { at } else { none };
+        let (from, to) = (
+            wall(lower, from, f64::NEG_INFINITY),
+            wall(upper, to, f64::INFINITY),
+        );
+        walls.push((axis, (from, to)));
+    }
+    family.with_walls(walls)
+}
+
+/// Why an axis cannot have such ends.
+fn fault(
+    draft: &Draft,
+    family: &Family,
+    (axis, name): (usize, &str),
+    ends: &[EndKind; 2],
+    range: Option<(f64, f64)>,
+) -> Option<Diagnostic> {
+    if ends.contains(&EndKind::Absorbing) {
+        let title = format!(
+            "the cells of `{name}` cannot end in absorption: what ends there has no steady state"
+        );
+        let remedy = format!(
+            "ask for the time until it happens, its rate and its probabilities by a passage: \
+             `[passage] exit = {{ from = \"density\", until = \"{name} > …\" }}`, with cells that reach beyond (docs/passage.md)"
+        );
+        return Some(Diagnostic::new(title).remedy(remedy));
+    }
+    if !ends.contains(&EndKind::Reflecting) {
+        return None;
+    }
+    let along = family.along().unwrap_or_default();
+    if along.iter().any(|system| !system.is_noisy(axis)) {
+        let title = format!("no noise acts on `{name}`, which a wall that reflects needs");
+        return Some(Diagnostic::new(title).remedy(
+            "without noise a path would lie at the wall, with a share of all probability; put the wall on an axis with \
+             noise, or let a stiff force keep the state inside",
+        ));
+    }
+    if range.is_none() {
+        let title =
+            format!("the wall of `{name}` stands where its cells end, and that is not said");
+        return Some(Diagnostic::new(title).remedy(format!("give `cells.{name}.from` and `to`")));
+    }
+    if draft.method.kind == MethodKind::Sgcm {
+        let title = format!("`sgcm` knows no walls that reflect, as `{name}` has one");
+        return Some(
+            Diagnostic::new(title)
+                .remedy("set `method.kind = \"generator\"`, or `\"monte-carlo\"`"),
+        );
+    }
+    None
+}
+
+fn refuse(reader: &mut Reader<'_>, name: &str, found: Diagnostic) {
+    let place = reader.place(&["system", "bounds", name]);
+    reader.report(match place {
+        Some(place) => found.at(place, "these ends"),
+        None => found,
+    });
+}

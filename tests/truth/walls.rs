@@ -1,0 +1,215 @@
+//! Walls at which a process is reflected, against closed forms and sampled paths.
+
+use std::f64::consts::PI;
+
+use pbif::cancellation::Cancellation;
+use pbif::continuation::{DensitySource, Measure};
+use pbif::method::{GeneratorMethodOptions, GeneratorSource, MonteCarloOptions, MonteCarloSource};
+use pbif::sweep_file::{Sweep, SweepFile};
+
+/// A sweep of D, with the lines of a file about it.
+fn sweep(system: &str, rest: &str) -> Sweep {
+    let text = format!(
+        "{system}\n[system.parameters]\nD = 0.5\n[sweep]\nparameter = \"D\"\nfrom = 0.4\nto = 0.6\npoints = 2\n{rest}"
+    );
+    let file = SweepFile::parse("walls.toml", &text);
+    file.validate()
+        .unwrap_or_else(|report| panic!("{report}"))
+        .prepare(&Cancellation::new())
+        .unwrap_or_else(|report| panic!("{report}"))
+}
+
+/// The measures at D = 1/2 by the generator, and the watched densities as cell masses. No wall is told as an end.
+fn solved(sweep: &Sweep) -> (Vec<Measure>, Vec<Vec<f64>>) {
+    let source = GeneratorSource::new(&sweep.problem, &GeneratorMethodOptions::default()).unwrap();
+    let mut session = source.open(&Cancellation::new());
+    let solution = session.solve(0.5).unwrap();
+    let findings = &solution.report.findings;
+    assert!(findings.is_empty(), "{findings:?}");
+    let densities = solution.densities.iter().map(|one| one.density.masses());
+    (solution.report.measures, densities.collect())
+}
+
+/// The stated error of a number holds, and is small.
+#[track_caller]
+fn holds(measures: &[Measure], name: &str, exact: f64, largest: f64) {
+    let found = measures.iter().find(|one| one.name == name);
+    let found = found.unwrap_or_else(|| panic!("{name}"));
+    let (value, error) = (found.value, found.error.unwrap());
+    println!(
+        "{name}: {value:.9} ± {error:.1e}, exactly {exact:.9}, off by {:.1e}",
+        value - exact
+    );
+    assert!(
+        (value - exact).abs() <= error,
+        "{name}: {value} ± {error}, exactly {exact}"
+    );
+    assert!(error <= largest * exact.abs(), "{name}: {value} ± {error}");
+}
+
+/// Mean and standard deviation of a normal variable of mean m and variance s² that is known to be positive.
+fn half_normal(mean: f64, variance: f64) -> (f64, f64) {
+    let deviation = variance.sqrt();
+    let place = -mean / deviation;
+    let density = (-place * place / 2.0).exp() / (2.0 * PI).sqrt();
+    let beyond = 0.5 * statrs::function::erf::erfc(place / 2f64.sqrt());
+    let ratio = density / beyond;
+    let variance = variance * (1.0 + place * ratio - ratio * ratio);
+    (mean + deviation * ratio, variance.sqrt())
+}
+
+const DRIFTING: &str = r#"
+[system.equations]
+x = "-1"
+[system.noise]
+x = "sqrt(2 D)"
+[system.bounds]
+x = ["reflecting", "open"]
+"#;
+
+#[test]
+fn brownian_motion_that_drifts_to_a_wall_has_an_exponential_density() {
+    let sweep = sweep(DRIFTING, "[cells]\nx = { from = 0, to = 20, count = 60 }\n");
+    let (measures, masses) = solved(&sweep);
+    // p = (c/D) e^{-c x/D}: mean and standard deviation are D/c.
+    holds(&measures, "mean_x", 0.5, 1e-6);
+    holds(&measures, "sd_x", 0.5, 1e-6);
+    let edges = sweep.problem.space().axes()[0].edges();
+    for (mass, ends) in masses[0].iter().zip(edges.windows(2)) {
+        let exact = (-2.0 * ends[0]).exp() - (-2.0 * ends[1]).exp();
+        assert!((mass - exact).abs() < 1e-12);
+    }
+}
+
+const HALF_PLANE: &str = r#"
+[system.equations]
+x = "0.3 - x"
+y = "0.5 x - y"
+[system.noise]
+x = "sqrt(2 D)"
+y = "sqrt(D)"
+[system.bounds]
+x = ["reflecting", "open"]
+"#;
+
+#[test]
+fn ornstein_uhlenbeck_on_a_half_plane_is_half_of_a_normal_density() {
+    let (mean, deviation) = half_normal(0.3, 0.5);
+    let erf = |x: f64| statrs::function::erf::erf(x - 0.3);
+    for (count, largest) in [(60, 1e-4), (80, 6e-5), (120, 3e-5)] {
+        let cells = format!(
+            "[cells]\nx = {{ from = 0, to = 5, count = {count} }}\ny = {{ from = -2.7, to = 3.5, count = {count} }}\n"
+        );
+        let sweep = sweep(HALF_PLANE, &cells);
+        let (measures, masses) = solved(&sweep);
+        println!("{count} cells an axis");
+        holds(&measures, "mean_x", mean, 5e-3);
+        holds(&measures, "sd_x", deviation, 5e-3);
+        // d⟨y⟩/dt = 0.
+        holds(&measures, "mean_y", 0.5 * mean, 5e-3);
+        // x alone: p(x) ∝ exp(-(x - 0.3)²) on x > 0.
+        let edges = sweep.problem.space().axes()[0].edges();
+        let exact = |ends: &[f64]| (erf(ends[1]) - erf(ends[0])) / (1.0 - erf(0.0));
+        let off = masses[0].iter().zip(edges.windows(2));
+        let off: f64 = 0.5
+            * off
+                .map(|(mass, ends)| (mass - exact(ends)).abs())
+                .sum::<f64>();
+        println!("p(x) is off by {off:.1e} in total variation");
+        assert!(off < largest);
+    }
+}
+
+#[test]
+fn between_four_walls_two_independent_axes_stay_independent() {
+    let system = r#"
+[system.equations]
+x = "-1"
+y = "-0.5 y"
+[system.noise]
+x = "sqrt(2 D)"
+y = "sqrt(2 D)"
+[system.bounds]
+x = "reflecting"
+y = "reflecting"
+"#;
+    let cells =
+        "[cells]\nx = { from = 0, to = 2, count = 40 }\ny = { from = 0, to = 1.5, count = 40 }\n";
+    let (measures, _) = solved(&sweep(system, cells));
+    let moment = |weight: &dyn Fn(f64) -> f64, to: f64, power: i32| {
+        let n = 20_000;
+        let h = to / f64::from(n);
+        let at = |k: i32| (f64::from(k) + 0.5) * h;
+        (0..n)
+            .map(|k| h * weight(at(k)) * at(k).powi(power))
+            .sum::<f64>()
+    };
+    let exact = |weight: &dyn Fn(f64) -> f64, to: f64| {
+        let [zeroth, first, second] = [0, 1, 2].map(|power| moment(weight, to, power));
+        let mean = first / zeroth;
+        (mean, (second / zeroth - mean * mean).sqrt())
+    };
+    let (mean_x, sd_x) = exact(&|x| (-2.0 * x).exp(), 2.0);
+    let (mean_y, sd_y) = exact(&|y| (-0.5 * y * y).exp(), 1.5);
+    holds(&measures, "mean_x", mean_x, 2e-3);
+    holds(&measures, "sd_x", sd_x, 2e-3);
+    holds(&measures, "mean_y", mean_y, 2e-3);
+    holds(&measures, "sd_y", sd_y, 2e-3);
+}
+
+#[test]
+fn a_passage_begins_at_a_wall_and_modes_die_out_between_walls() {
+    // T = (D/c²)(e^{c b/D} - 1) - b/c from the wall to b.
+    let rest = r#"[cells]
+x = { from = 0, to = 6, count = 100 }
+[passage]
+up = { start = { x = 0 }, until = "x > 2" }
+"#;
+    let (measures, _) = solved(&sweep(DRIFTING, rest));
+    holds(&measures, "up_mean", 0.5 * (4.0f64.exp() - 1.0) - 2.0, 1e-3);
+    // Between walls a length L apart: λ = D π²/L² + c²/(4 D).
+    let system = r#"
+[system.equations]
+x = "-1"
+[system.noise]
+x = "sqrt(2 D)"
+[system.bounds]
+x = "reflecting"
+"#;
+    let rest = "[cells]\nx = { from = 0, to = 2, count = 100 }\n[relaxation]\nmodes = 1\n";
+    let (measures, _) = solved(&sweep(system, rest));
+    holds(
+        &measures,
+        "decay_rate_1",
+        0.5 * (PI / 2.0).powi(2) + 0.5,
+        1e-2,
+    );
+}
+
+#[test]
+fn sampled_paths_turn_back_at_walls() {
+    let cells =
+        "[cells]\nx = { from = 0, to = 5, count = 40 }\ny = { from = -4, to = 6, count = 40 }\n";
+    let sampled = sweep(
+        HALF_PLANE,
+        &format!("{cells}[method]\nkind = \"monte-carlo\"\ntime_step = 0.01\n"),
+    );
+    let options = MonteCarloOptions {
+        time_step: pbif::method::StepChoice::Fixed(0.01),
+        ..MonteCarloOptions::default()
+    };
+    let never = Cancellation::new();
+    let source = MonteCarloSource::new(&sampled.problem, &options, &never).unwrap();
+    let found = source.open(&never).solve(0.5).unwrap().report;
+    let (mean, deviation) = half_normal(0.3, 0.5);
+    for (name, exact) in [
+        ("mean_x", mean),
+        ("sd_x", deviation),
+        ("mean_y", 0.5 * mean),
+    ] {
+        let one = found.measures.iter().find(|one| one.name == name).unwrap();
+        let error = one.error.unwrap();
+        println!("{name}: {} ± {error}, exactly {exact}", one.value);
+        assert!((one.value - exact).abs() < 4.0 * error && error < 1e-2);
+    }
+}
