@@ -7,6 +7,7 @@
 //! nothing.
 
 use super::{SlowModes, dot};
+use crate::space::CellSpace;
 
 /// Largest variance of the left vector inside the states, over the square of their distance, up to which there are two.
 const TWO_STATES: f64 = 0.1;
@@ -27,15 +28,10 @@ struct Plateau {
 }
 
 impl Plateau {
-    fn new(left: &[f64], unknowns: &[f64], levels: &[f64]) -> Option<Self> {
-        let inside = || {
-            left.iter()
-                .zip(unknowns)
-                .zip(levels)
-                .filter(|(_, level)| **level < 0.0)
-        };
+    fn new(left: &[f64], unknowns: &[f64], inside: &[f64]) -> Option<Self> {
         let sum = |power: i32, about: f64| -> f64 {
-            let terms = inside().map(|((left, mass), _)| mass * (left - about).powi(power));
+            let cells = left.iter().zip(unknowns).zip(inside);
+            let terms = cells.map(|((left, mass), part)| part * mass * (left - about).powi(power));
             terms.sum()
         };
         let mass = sum(0, 0.0);
@@ -52,10 +48,12 @@ impl Plateau {
 /// unknowns of the steady state, with what those of a second discretisation differ by. `None` where the slowest mode
 /// is no exchange between them: it oscillates, or its left vector is not flat in each, or has one height in both.
 ///
-/// The error holds that of the decay rate, what the second discretisation changes of the shares, and the variance of
-/// the left vector inside the states: by so much of it the mode is not an exchange of two states.
+/// The error holds that of the decay rate, what the second discretisation changes of the shares, what whole cells at
+/// the borders of the regions change in place of parts of them, and the variance of the left vector inside: by
+/// so much of it the mode is not an exchange of two states.
 pub fn switching(
     modes: &SlowModes,
+    space: &CellSpace,
     (unknowns, changes): (&[f64], Option<&[f64]>),
     [first, second]: [&[f64]; 2],
 ) -> Option<Switching> {
@@ -63,8 +61,12 @@ pub fn switching(
     if left.len() != unknowns.len() {
         return None;
     }
-    let [one, other] = [first, second].map(|levels| Plateau::new(left, unknowns, levels));
-    let (one, other) = (one?, other?);
+    let plateaus = |inside: fn(&CellSpace, &[f64]) -> Vec<f64>| {
+        let plateau = |levels| Plateau::new(left, unknowns, &inside(space, levels));
+        Some((plateau(first)?, plateau(second)?))
+    };
+    let (one, other) = plateaus(parts_inside)?;
+    let (whole_one, whole_other) = plateaus(cells_inside)?;
     let distance = one.height - other.height;
     let spread = (one.variance + other.variance) / (distance * distance);
     let whole: f64 = unknowns.iter().sum();
@@ -74,10 +76,12 @@ pub fn switching(
     if !(spread <= TWO_STATES && (0.0..=1.0).contains(&share)) {
         return None;
     }
-    let change = changes.map_or(0.0, |changes| {
-        let about: Vec<f64> = left.iter().map(|value| value - mean).collect();
-        (dot(&about, changes) / whole / distance).abs()
-    });
+    let by_cells = (mean - whole_other.height) / (whole_one.height - whole_other.height);
+    let change = (by_cells - share).abs()
+        + changes.map_or(0.0, |changes| {
+            let about: Vec<f64> = left.iter().map(|value| value - mean).collect();
+            (dot(&about, changes) / whole / distance).abs()
+        });
     let (decay, error) = slowest.decay;
     let rate = |share: f64| {
         (
@@ -89,4 +93,28 @@ pub fn switching(
         there: rate(1.0 - share),
         back: rate(share),
     })
+}
+
+/// One for cells whose node is inside, zero for others.
+fn cells_inside(_: &CellSpace, levels: &[f64]) -> Vec<f64> {
+    let one = |level: &f64| f64::from(u8::from(*level < 0.0));
+    levels.iter().map(one).collect()
+}
+
+/// How much of each cell is inside, were its level to change evenly over it.
+fn parts_inside(space: &CellSpace, levels: &[f64]) -> Vec<f64> {
+    let shape = space.shape();
+    let one = |cell: usize| {
+        let change = |axis: usize| {
+            let stride: usize = shape[axis + 1..].iter().product();
+            let position = space.position(cell, axis);
+            let low = cell - stride * usize::from(position > 0);
+            let high = cell + stride * usize::from(position + 1 < shape[axis]);
+            let steps = ((high - low) / stride).max(1);
+            (levels[high] - levels[low]).abs() / steps as f64
+        };
+        let over_a_cell: f64 = (0..shape.len()).map(change).sum();
+        (0.5 - levels[cell] / over_a_cell.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
+    };
+    (0..levels.len()).map(one).collect()
 }

@@ -323,6 +323,32 @@ go = { from = "x < -0.5", to = "x > 0.5", switching = "on" }
 }
 
 #[test]
+fn rates_between_two_wells_alike_are_alike_wherever_borders_cut_cells() {
+    for border in ["0.7", "0.715", "0.5"] {
+        let [there, back] = between(&format!(
+            r#"
+[system.equations]
+x = "x - x^3"
+[system.noise]
+x = "sqrt(2 D)"
+[sweep]
+parameter = "D"
+from = 0.1
+to = 0.12
+points = 2
+[cells]
+x = {{ from = -2.4, to = 2.4, count = 120 }}
+[passage]
+go = {{ from = "x < -{border}", to = "x > {border}", switching = "on" }}
+"#
+        ));
+        println!("{border}: {there:?} {back:?}");
+        assert!((there.0 - back.0).abs() <= there.1 + back.1);
+        assert!(there.1 < 1e-2 * there.0);
+    }
+}
+
+#[test]
 fn an_underdamped_well_is_left_as_often_as_paths_leave_it() {
     let [there, back] = between(
         r#"

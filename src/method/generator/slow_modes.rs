@@ -95,7 +95,7 @@ fn add_switching(
         let (first, second) = (level(from)?, level(&question.until)?);
         let rates = known.and_then(|(modes, density)| {
             let steady = (density.unknowns, density.changes);
-            switching(modes, steady, [&first, &second])
+            switching(modes, space, steady, [&first, &second])
         });
         match rates {
             Some(rates) => {
