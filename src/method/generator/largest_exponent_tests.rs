@@ -124,7 +124,7 @@ fn oscillators_of_constant_derivatives_have_the_exponent_of_the_linear_equation_
  {
     // Damping alone: all solutions decay like e^{-ζt}.
     let linear: Typed<'_> = (["y", "-x - 0.4*y"], &[("y", "p")]);
-    assert_near(by_angles(linear, 0.5, [2.5, 2.5], 24), (-0.2, 1e-9), 1e-5);
+    assert_near(by_angles(linear, 0.5, [3.4, 3.4], 28), (-0.2, 1e-9), 1e-5);
     // Noise in stiffness and damping, in other units of y, beside additive noise that keeps the density wide.
     let parametric: [Typed<'_>; 3] = [
         (["y", "-x - 0.1*y"], &[("y", "p*x"), ("y", "0.3")]),
