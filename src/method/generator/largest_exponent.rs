@@ -4,8 +4,8 @@
 //! Where the derivatives of drift and noise are the same everywhere it is that of a linear equation. Else the angle of
 //! small deviations is an axis of harmonics ([`crate::system`], `tangent`): the density of state and angle is solved
 //! for as any other, and the exponent is the mean rate of stretching. Its error adds up what more harmonics change and
-//! what the cells do: the difference to fewer of them, twice what half of the dissipation changes, and the rate at which
-//! mass leaves them.
+//! what the cells do: the difference to fewer of them, twice what half of the dissipation changes, and the rate at
+//! which mass leaves them.
 
 use std::sync::Arc;
 
@@ -295,8 +295,8 @@ fn cells(space: &CellSpace) -> [Vec<Axis>; 2] {
     })
 }
 
-/// What the exponent takes at every value on these cells, with the harmonics that most oscillators do with; `None` where
-/// it is no more than a mean.
+/// What the exponent takes at every value on these cells, with the harmonics that most oscillators do with; `None`
+/// where it is no more than a mean.
 pub(crate) fn cost_of_largest_exponent(
     space: &CellSpace,
     options: &GeneratorMethodOptions,
