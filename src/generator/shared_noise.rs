@@ -1,5 +1,5 @@
-//! A noise that moves a cell axis and an angle at once: the mixed derivative ∂²(c p)/∂x∂φ of the Fokker-Planck equation,
-//! c the product of its two amplitudes.
+//! A noise that moves an axis of cells and an angle at once: the mixed derivative ∂²(c p)/∂x∂φ of the Fokker-Planck
+//! equation, c the product of its two amplitudes.
 //!
 //! Along the angle the derivative is that of trigonometric polynomials, whose rows and columns sum to zero: nothing is
 //! fed to or taken from the density of the other axes. Along x it is a central difference of fourth order in the cell

@@ -238,7 +238,7 @@ fn solve_in_words(family: &Family, finding: &Finding) -> String {
             Some(point) => {
                 format!("no Lyapunov exponent: drift or noise has no derivative at {point}")
             }
-            None => "no Lyapunov exponent: the density of state and angle could not be solved for".to_owned(),
+            None => "no Lyapunov exponent: cells and harmonics do not resolve the directions in which deviations point".to_owned(),
         },
         Finding::Told(ref text) => text.clone(),
         // The others are worded above.

@@ -46,7 +46,6 @@ pub fn starting_files() -> &'static [StartingFile] {
         "duffing_vanderpol",
         "duffing_vanderpol_parametric",
         "duffing_vanderpol_stability",
-        "duffing_chaos",
         "double_well_spectrum",
         "galloping",
         "ship_roll",

@@ -112,7 +112,8 @@ impl Slopes {
 }
 
 impl Tangent {
-    /// Of a tape that gives the derivatives of the drift by rows, then those of each noise, of which the axes are given.
+    /// Of a tape that gives the derivatives of the drift by rows, then those of each noise, of which the axes are
+    /// given.
     pub(super) fn new(
         system: Arc<dyn System>,
         tape: Tape,

@@ -4,8 +4,8 @@
 //! Where the derivatives of drift and noise are the same everywhere it is that of a linear equation. Else the angle of
 //! small deviations is an axis of harmonics ([`crate::system`], `tangent`): the density of state and angle is solved
 //! for as any other, and the exponent is the mean rate of stretching. Its error adds up what more harmonics change and
-//! what the cells do: the difference to fewer of them, twice what half of the dissipation changes, and the rate at which
-//! mass leaves them.
+//! what the cells do: the difference to fewer of them, twice what half of the dissipation changes, and the rate at
+//! which mass leaves them.
 
 use std::sync::Arc;
 
@@ -36,6 +36,10 @@ const CHANGE: f64 = 5e-4;
 /// many: it is a mean, for which fewer cells do than for the place of a peak.
 const COARSE: usize = 32;
 const FINER: f64 = 1.5;
+
+/// Error, relative to the mean size of the rate of stretching, from which an exponent is not told: harmonics and cells
+/// that resolve nothing give any number.
+const UNKNOWN: f64 = 0.1;
 
 /// Operations of a factorisation on all cells beyond which no more harmonics are tried: some tens of seconds.
 const MOST_OPERATIONS: f64 = 1e12;
@@ -163,20 +167,21 @@ struct Stretching {
 }
 
 impl Angles<'_> {
-    /// The exponent with its error; `None` where there is no steady state of state and angle on these cells.
+    /// The exponent with its error; `None` where cells and harmonics do not resolve state and angle.
     pub(super) fn exponent(&self, space: &CellSpace) -> Result<Option<Exponent>, MethodError> {
         let [coarse, fine] = cells(space);
         let Some((harmonics, on_coarse, by_harmonics)) = self.harmonics(&coarse, &fine)? else {
             return Ok(None);
         };
-        let found = self.solve(&fine, harmonics, true)?;
-        Ok(found.map(|found| Exponent {
-            value: found.mean,
-            error: by_harmonics
-                + (found.mean - on_coarse).abs()
-                + 2.0 * found.by_scheme.abs()
-                + found.escape,
-        }))
+        let Some(found) = self.solve(&fine, harmonics, true)? else {
+            return Ok(None);
+        };
+        let by_cells = (found.mean - on_coarse).abs() + 2.0 * found.by_scheme.abs();
+        let error = by_harmonics + by_cells + found.escape;
+        // What is not a number is not small.
+        let is_known = error <= UNKNOWN * found.size;
+        let value = found.mean;
+        Ok(is_known.then_some(Exponent { value, error }))
     }
 
     /// How many harmonics do, the rate of stretching with them on coarse cells, and what more of them change there.
@@ -290,8 +295,8 @@ fn cells(space: &CellSpace) -> [Vec<Axis>; 2] {
     })
 }
 
-/// What the exponent takes at every value on these cells, with the harmonics that most oscillators do with; `None` where
-/// it is no more than a mean.
+/// What the exponent takes at every value on these cells, with the harmonics that most oscillators do with; `None`
+/// where it is no more than a mean.
 pub(crate) fn cost_of_largest_exponent(
     space: &CellSpace,
     options: &GeneratorMethodOptions,

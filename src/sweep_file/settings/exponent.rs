@@ -55,8 +55,8 @@ fn is_along_density(reader: &mut Reader<'_>, draft: &Draft, family: &Family) -> 
     false
 }
 
-/// Checks the state of `[exponent]`: it is named by axes of the system, and neither drift nor noise moves it at either end
-/// of the sweep or in its middle.
+/// Checks the state of `[exponent]`: it is named by axes of the system, and neither drift nor noise moves it at
+/// either end of the sweep or in its middle.
 fn fixed_point(reader: &mut Reader<'_>, draft: &Draft, family: &Family) -> Option<Vec<f64>> {
     let model = family.model();
     let is_axis = |name: &str| model.axes.iter().any(|axis| axis.name == name);
