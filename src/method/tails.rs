@@ -1,5 +1,5 @@
-//! What lies beyond the ends of the ranges: its mass from how the density falls near them, and what it would do to means
-//! and deviations. What leaves within one relaxation time is missing inside as well, and counts as beyond.
+//! What lies beyond the ends of the ranges: its mass from how the density falls near them, and what it would do to
+//! means and deviations. What leaves within one relaxation time is missing inside as well, and counts as beyond.
 
 use crate::density::{EstimatedMoments, Moments};
 use crate::space::CellSpace;

@@ -2,8 +2,8 @@
 //!
 //! What lies beyond them is missing: inside, all values are too large by as much. What leaves through them comes back
 //! in truth, while here all of the mass comes back in its place. In first order that is what the steady state would
-//! answer if what leaves stayed in the cells that it leaves from: where a well leaks it says by how much that well holds
-//! too little, and the others too much.
+//! answer if what leaves stayed in the cells that it leaves from: where a well leaks it says by how much that well
+//! holds too little, and the others too much.
 
 use super::session::{GeneratorSession, PointSolve};
 use crate::density::{EstimatedDensity, Truncation};
