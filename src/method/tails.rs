@@ -1,5 +1,5 @@
-//! What lies beyond the ends of the ranges: its mass from how the density falls near them, and what it would do to means
-//! and deviations. What leaves within one relaxation time is missing inside as well, and counts as beyond.
+//! What lies beyond the ends of the ranges: its mass from how the density falls near them, and what it would do to
+//! means and deviations. What leaves within one relaxation time is missing inside as well, and counts as beyond.
 
 use crate::density::{EstimatedMoments, Moments};
 use crate::space::CellSpace;
@@ -28,13 +28,14 @@ fn tail(cells: &[(f64, f64)]) -> Tail {
     let mut edge = 0.0;
     let mut best = Tail {
         outer,
-        beyond: outer,
+        beyond: outer.max(0.0),
     };
     for pair in cells.windows(2) {
         let ((mass, width), (next, next_width)) = (pair[0], pair[1]);
         let (outside, distance) = (edge, edge + 0.5 * width);
         edge += width;
-        if outer <= 0.0 || mass <= 0.0 {
+        // Below zero there is nothing but wiggles of the scheme.
+        if outer <= 0.0 || mass <= 0.0 || next <= 0.0 {
             continue;
         }
         let rate = (next / next_width / (mass / width)).ln() / (0.5 * (width + next_width));
@@ -189,5 +190,7 @@ mod tests {
     fn a_density_that_rises_toward_its_end_may_go_on() {
         assert_eq!(tail(&[(0.2, 1.0), (0.1, 1.0)]).beyond, 0.2);
         assert_eq!(tail(&[(0.0, 1.0), (0.1, 1.0)]).beyond, 0.0);
+        assert_eq!(tail(&[(-0.1, 1.0), (0.1, 1.0)]).beyond, 0.0);
+        assert_eq!(tail(&[(0.1, 1.0), (-0.1, 1.0)]).beyond, 0.1);
     }
 }

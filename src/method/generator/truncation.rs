@@ -2,8 +2,8 @@
 //!
 //! What lies beyond them is missing: inside, all values are too large by as much. What leaves through them comes back
 //! in truth, while here all of the mass comes back in its place. In first order that is what the steady state would
-//! answer if what leaves stayed in the cells that it leaves from: where a well leaks it says by how much that well holds
-//! too little, and the others too much.
+//! answer if what leaves stayed in the cells that it leaves from: where a well leaks it says by how much that well
+//! holds too little, and the others too much.
 
 use super::session::{GeneratorSession, PointSolve};
 use crate::density::{EstimatedDensity, Truncation};
@@ -23,9 +23,6 @@ const LAST_TERM: f64 = 0.001;
 /// Largest ratio of terms that is believed.
 const LARGEST_RATIO: f64 = 0.8;
 
-/// Share of the stated errors of a density below which what leaves is not looked at more closely.
-const LEAST_SHARE: f64 = 0.03;
-
 /// What leaves does not come back where it leaves from: twice its effect is allowed for.
 const ALLOWED: f64 = 2.0;
 
@@ -43,7 +40,8 @@ impl GeneratorSession {
             errors.map(|(error, volume)| error * volume).sum::<f64>()
         });
         let least = stated.fold(f64::INFINITY, f64::min);
-        if missing.leak <= LEAST_SHARE * least {
+        // Where less leaves than schemes differ by, its share will do.
+        if missing.leak <= least {
             let share = missing.beyond + ALLOWED * missing.leak;
             densities
                 .iter_mut()
