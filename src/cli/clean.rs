@@ -49,7 +49,11 @@ pub(super) fn run(arguments: &CleanArguments) -> Result<Outcome, CommandError> {
         stays.extend(removal.stays);
     }
     let is_done = |(_, why): &(PathBuf, Stays)| !matches!(why, Stays::Refused(_));
-    print(&format!("{} removed\n{}", count(going.len()), kept(&stays)))?;
+    print(&format!(
+        "{} removed\n{}",
+        count(going.len()),
+        list_kept(&stays)
+    ))?;
     Ok(if stays.iter().all(is_done) {
         Outcome::Complete
     } else {
@@ -58,7 +62,7 @@ pub(super) fn run(arguments: &CleanArguments) -> Result<Outcome, CommandError> {
 }
 
 /// What stays, and why.
-fn kept(stays: &[(PathBuf, Stays)]) -> String {
+fn list_kept(stays: &[(PathBuf, Stays)]) -> String {
     if stays.is_empty() {
         return String::new();
     }

@@ -40,7 +40,7 @@ pub(super) fn run(arguments: &ExploreArguments) -> Result<Outcome, CommandError>
         &["detect", "locate"],
         arguments.quiet,
     )?;
-    let outcome = written(&StoredPage::new(&stored.spec, &stored.result)?, arguments)?;
+    let outcome = write_page(&StoredPage::new(&stored.spec, &stored.result)?, arguments)?;
     super::print(&curves_of(&arguments.target))?;
     Ok(outcome)
 }
@@ -94,11 +94,11 @@ fn of_plane(stored: &StoredPlane, arguments: &ExploreArguments) -> Result<Outcom
         super::print("interrupted: nothing was written\n")?;
         return Ok(Outcome::Interrupted);
     }
-    written(&page?, arguments)
+    write_page(&page?, arguments)
 }
 
 /// Writes a page where it is wanted, and says where that is.
-fn written(page: &StoredPage, arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
+fn write_page(page: &StoredPage, arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
     let file = file_of(arguments);
     place::check(&file, arguments.force)?;
     write_anywhere(&file, page.html().as_bytes())?;
@@ -138,7 +138,10 @@ fn serve(arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
         file: arguments.target.clone(),
         overrides: arguments.overrides.clone(),
     };
-    let sweep = super::prepared(super::given(&input, arguments.quiet)?, arguments.quiet)?;
+    let sweep = super::prepare(
+        super::read_settings(&input, arguments.quiet)?,
+        arguments.quiet,
+    )?;
     let server = LiveServer::bind(&sweep, arguments.port.unwrap_or(0))?;
     let (_, cancellation) = super::interruptible(None)?;
     super::print(&format!("{}\n", server.address()))?;

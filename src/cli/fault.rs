@@ -45,7 +45,7 @@ pub(super) fn guard(
     }));
     let ended = catch_unwind(AssertUnwindSafe(command));
     // The hook of before is not put back: the command may have left threads.
-    ended.map_err(|_| tell(false, &told(target))).ok()
+    ended.map_err(|_| tell(false, &describe(target))).ok()
 }
 
 fn words(payload: &(dyn Any + Send)) -> &str {
@@ -55,7 +55,7 @@ fn words(payload: &(dyn Any + Send)) -> &str {
 }
 
 /// What was worked on, and what is left of it.
-fn told(target: Option<&Path>) -> String {
+fn describe(target: Option<&Path>) -> String {
     let mut text = "pbif itself is at fault".to_owned();
     if let Some(target) = target {
         text += &format!(", at work on {}", target.display());
@@ -83,10 +83,10 @@ mod tests {
         let home = tempfile::tempdir().unwrap();
         at_work(home.path(), Layout::SWEEP);
         let target = Path::new("my.toml");
-        assert!(told(Some(target)).contains("may not be whole"));
+        assert!(describe(Some(target)).contains("may not be whole"));
         at_work(home.path(), Layout::SWEEP);
         std::fs::write(home.path().join("journal.bin"), "").unwrap();
-        let text = told(Some(target));
+        let text = describe(Some(target));
         assert!(
             text.contains("at work on my.toml") && text.contains("`--resume`"),
             "{text}"

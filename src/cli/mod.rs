@@ -172,7 +172,7 @@ fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
             sweep::run(&spec, &input.name(), run)
         }
         Command::Check { input } => {
-            let spec = prepared(given(input, false)?, false)?;
+            let spec = prepare(read_settings(input, false)?, false)?;
             print(&check::text(&input.file, &spec)?)
         }
         Command::Compare { input, run } => {
@@ -235,7 +235,7 @@ fn load(
 }
 
 /// The sweep file that was given.
-fn given(input: &args::SweepInput, quiet: bool) -> Result<Settings, Report> {
+fn read_settings(input: &args::SweepInput, quiet: bool) -> Result<Settings, Report> {
     load(
         &input.file,
         &mut |_| (),
@@ -246,7 +246,7 @@ fn given(input: &args::SweepInput, quiet: bool) -> Result<Settings, Report> {
 
 /// The sweep that was given; says on stderr what was chosen for the program's part. `pbif check` has it on stdout.
 fn chosen(input: &args::SweepInput, quiet: bool) -> Result<Sweep, Report> {
-    let spec = prepared(given(input, quiet)?, quiet)?;
+    let spec = prepare(read_settings(input, quiet)?, quiet)?;
     for line in &spec.settings.chosen {
         tell(quiet, &format!("{line}\n"));
     }
@@ -257,7 +257,7 @@ fn chosen(input: &args::SweepInput, quiet: bool) -> Result<Sweep, Report> {
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// A sweep that is ready to run; says on stderr which part of its preparation takes longer than a second.
-fn prepared(settings: Settings, quiet: bool) -> Result<Sweep, Report> {
+fn prepare(settings: Settings, quiet: bool) -> Result<Sweep, Report> {
     // The preparation runs on the threads of the process, which would otherwise be made when they are first asked for,
     // where there is no way to refuse. That they are there already has no source.
     if let Err(error) = rayon::ThreadPoolBuilder::new().build_global()
@@ -298,16 +298,16 @@ fn prepared(settings: Settings, quiet: bool) -> Result<Sweep, Report> {
 /// Says something on stderr, unless it is to be quiet.
 fn tell(quiet: bool, text: &str) {
     if !quiet {
-        put(&harmless(text, false));
+        write_out(&harmless(text, false));
     }
 }
 
 /// Says what was drawn for the terminal at hand.
 fn tell_styled(text: &str) {
-    put(&harmless(text, is_styled()));
+    write_out(&harmless(text, is_styled()));
 }
 
-fn put(text: &str) {
+fn write_out(text: &str) {
     // Without a reader of stderr there is nobody to tell.
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }

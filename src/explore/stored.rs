@@ -65,7 +65,7 @@ impl StoredPage {
         if states.len() < all {
             return Err(SourceError::Interrupted.into());
         }
-        shown(sweep, &plane, &states).fitted()
+        show(sweep, &plane, &states).fitted()
     }
 
     /// The page of curves that were begun at the row `start` of a sweep: their plane, and densities at 21 × 21 places
@@ -92,7 +92,7 @@ impl StoredPage {
         let subject = sweep.problem.subject();
         let plane = PlaneScene::of(plane, &subject.family);
         let plane = plane.with(subject, &nodes_of(&states), (curves, start));
-        shown(sweep, &plane, &states).fitted()
+        show(sweep, &plane, &states).fitted()
     }
 
     /// The page.
@@ -107,7 +107,7 @@ impl StoredPage {
 }
 
 /// What the page of a plane shows.
-fn shown<'a>(sweep: &'a Sweep, plane: &'a PlaneScene, states: &'a [PlaneState]) -> Shown<'a> {
+fn show<'a>(sweep: &'a Sweep, plane: &'a PlaneScene, states: &'a [PlaneState]) -> Shown<'a> {
     Shown {
         sweep,
         subject: sweep.problem.subject(),

@@ -196,8 +196,8 @@ pub(super) fn line_start(
 mod tests {
     use super::*;
     use crate::space::{Axis, Grading};
-    use crate::system::registry;
     use crate::system::test_families::OneState;
+    use crate::system::test_families::built_in;
 
     fn dahl() -> std::sync::Arc<dyn System> {
         let values = [
@@ -206,10 +206,7 @@ mod tests {
             ("f_c", 0.1),
             ("sigma2", 0.2),
         ];
-        registry::find("dahl")
-            .unwrap()
-            .system_with(&values)
-            .unwrap()
+        built_in("dahl", &values)
     }
 
     fn space() -> CellSpace {

@@ -113,15 +113,12 @@ fn layer(system: &dyn System, ranges: &[(f64, f64)], axis: usize, at: f64) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::system::registry;
+    use crate::system::test_families::built_in;
 
     #[test]
     fn the_smallest_cell_is_a_quarter_of_the_layer() {
         let values = [("kappa", 0.01), ("f_c", 0.01), ("sigma2", 0.01)];
-        let coulomb = registry::find("coulomb")
-            .unwrap()
-            .system_with(&values)
-            .unwrap();
+        let coulomb = built_in("coulomb", &values);
         let ranges = [(-4.0, 4.0), (-4.0, 4.0)];
         let grading = automatic_grading(&*coulomb, &ranges, 1, 100).unwrap();
         assert_eq!(grading.at, vec![0.0]);
@@ -140,10 +137,7 @@ mod tests {
             ("f_c", 0.1),
             ("sigma2", 0.2),
         ];
-        let dahl = registry::find("dahl")
-            .unwrap()
-            .system_with(&values)
-            .unwrap();
+        let dahl = built_in("dahl", &values);
         let grading = |z: (f64, f64)| {
             automatic_grading(&*dahl, &[(-2.0, 2.0), (-2.0, 2.0), z], 2, 20).map(|found| found.at)
         };
@@ -160,10 +154,7 @@ mod tests {
             ("f_c", 0.1),
             ("sigma2", 0.2),
         ];
-        let dahl = registry::find("dahl")
-            .unwrap()
-            .system_with(&values)
-            .unwrap();
+        let dahl = built_in("dahl", &values);
         let ranges = [(-2.0, 2.0), (-3.0, 3.0), (-0.5, 0.5)];
         let grading = automatic_grading(&*dahl, &ranges, 1, 50).unwrap();
         assert_eq!(grading.at, vec![0.0]);
@@ -173,10 +164,7 @@ mod tests {
     #[test]
     fn a_smooth_system_is_not_graded() {
         let values = [("a", 0.5), ("sigma2", 0.1)];
-        let bistable = registry::find("bistable")
-            .unwrap()
-            .system_with(&values)
-            .unwrap();
+        let bistable = built_in("bistable", &values);
         assert_eq!(automatic_grading(&*bistable, &[(-2.0, 2.0)], 0, 50), None);
     }
 }

@@ -157,7 +157,7 @@ mod tests {
     use crate::generator::banded_tests::null_vector;
     use crate::generator::{GeneratorError, GeneratorOptions, assemble, unknown_moments};
     use crate::space::{Axis, CellSpace};
-    use crate::system::registry;
+    use crate::system::test_families::built_in;
 
     /// P_0 … P_{count - 1} at s.
     fn legendre(count: usize, s: f64) -> Vec<f64> {
@@ -233,10 +233,7 @@ mod tests {
     fn dahl(cells: usize, modes: usize, sigma2: f64) -> (CellSpace, Vec<f64>) {
         let mut values = VALUES;
         values[5].1 = sigma2;
-        let system = registry::find("dahl")
-            .unwrap()
-            .system_with(&values)
-            .unwrap();
+        let system = built_in("dahl", &values);
         let x = Axis::uniform(-2.4, 2.4, cells).unwrap();
         let y = Axis::uniform(-3.2, 3.2, cells).unwrap();
         let space = CellSpace::new(vec![x, y, Axis::modes(-0.5, 0.5, modes).unwrap()]).unwrap();
@@ -291,10 +288,7 @@ mod tests {
 
     #[test]
     fn modes_are_for_bounded_states_without_noise() {
-        let system = registry::find("dahl")
-            .unwrap()
-            .system_with(&VALUES)
-            .unwrap();
+        let system = built_in("dahl", &VALUES);
         let refused = |axes: [Axis; 3]| {
             let space = CellSpace::new(axes.to_vec()).unwrap();
             assemble(&*system, &space, &GeneratorOptions::default()).err()

@@ -199,14 +199,11 @@ fn diffusion_at(system: &dyn System, space: &CellSpace, axis: usize, cell: usize
 mod tests {
     use super::*;
     use crate::space::{Axis, Grading};
-    use crate::system::registry;
+    use crate::system::test_families::built_in;
 
     fn judged(y: Axis) -> Resolution {
         let values = [("kappa", 0.05), ("f_c", 0.01), ("sigma2", 0.1)];
-        let coulomb = registry::find("coulomb")
-            .unwrap()
-            .system_with(&values)
-            .unwrap();
+        let coulomb = built_in("coulomb", &values);
         let x = Axis::uniform(-2.0, 2.0, 20).unwrap();
         let space = CellSpace::new(vec![x, y]).unwrap();
         let masses: Vec<f64> = (0..space.n_cells())
@@ -240,10 +237,7 @@ mod tests {
             ("f_c", 0.05),
             ("sigma2", 0.02),
         ];
-        let dahl = registry::find("dahl")
-            .unwrap()
-            .system_with(&values)
-            .unwrap();
+        let dahl = built_in("dahl", &values);
         let axis = || Axis::uniform(-2.0, 2.0, 20).unwrap();
         let z = Axis::uniform(-0.8, 0.8, 4).unwrap();
         let space = CellSpace::new(vec![axis(), axis(), z]).unwrap();

@@ -43,7 +43,7 @@ impl<'a> CompareJob<'a> {
             return Err(found.into());
         }
         Ok(Self {
-            made_of: described(sweep),
+            made_of: describe(sweep),
             resolved: sweep.to_toml(),
             sweep,
             kept: 0,
@@ -62,7 +62,7 @@ impl<'a> CompareJob<'a> {
 }
 
 /// The sweep, the values, and the settings of every method, as TOML.
-fn described(sweep: &Sweep) -> String {
+fn describe(sweep: &Sweep) -> String {
     let table = |text: String| text.parse::<toml::Table>().unwrap_or_default();
     let mut whole = table(sweep.to_toml());
     let mut compared = toml::Table::new();

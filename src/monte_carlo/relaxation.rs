@@ -278,7 +278,7 @@ fn settled_states(watched: &[Watched]) -> Vec<Vec<f64>> {
 mod tests {
     use super::*;
     use crate::space::Axis;
-    use crate::system::registry;
+    use crate::system::test_families::built_in;
 
     fn square_space(half: f64) -> CellSpace {
         let axis = Axis::uniform(-half, half, 40).unwrap();
@@ -296,10 +296,7 @@ mod tests {
             ("f_c", 0.0),
             ("sigma2", 0.01),
         ];
-        let system = registry::find("coulomb")
-            .unwrap()
-            .system_with(&values)
-            .unwrap();
+        let system = built_in("coulomb", &values);
         let never = Cancellation::new();
         let found = relaxation(&*system, &square_space(2.0), 1, &never).unwrap();
         assert!(found.resolved && found.runaways == 0.0);
@@ -337,10 +334,7 @@ mod tests {
     #[test]
     fn what_runs_away_is_told() {
         let values = [("kappa", -0.5), ("mu", 0.0), ("f_c", 0.0), ("sigma2", 0.01)];
-        let system = registry::find("coulomb")
-            .unwrap()
-            .system_with(&values)
-            .unwrap();
+        let system = built_in("coulomb", &values);
         let never = Cancellation::new();
         let found = relaxation(&*system, &square_space(2.0), 1, &never).unwrap();
         assert_eq!(found.runaways, 1.0);

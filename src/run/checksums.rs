@@ -31,7 +31,7 @@ pub(super) fn write(run: &Path, entries: &[&str]) -> Result<(), RunError> {
     for entry in entries {
         add(run, entry, &mut sums)?;
     }
-    put(run, &sums)
+    write_sums(run, &sums)
 }
 
 /// Writes those below one entry anew, which was made anew.
@@ -44,7 +44,7 @@ pub(super) fn renew(run: &Path, entry: &str) -> Result<(), RunError> {
     };
     sums.retain(|name, _| !is_below(name, entry));
     add(run, entry, &mut sums)?;
-    put(run, &sums)
+    write_sums(run, &sums)
 }
 
 /// The files of a folder, which may hold the files and folders `all`, that are below the given entries (all, if there
@@ -176,7 +176,7 @@ fn sum(bytes: &[u8]) -> String {
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-fn put(run: &Path, sums: &Sums) -> Result<(), RunError> {
+fn write_sums(run: &Path, sums: &Sums) -> Result<(), RunError> {
     let lines = sums.iter().map(|(name, sum)| format!("{sum}  {name}\n"));
     write_durably(&run.join(NAME), lines.collect::<String>().as_bytes())
 }

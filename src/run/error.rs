@@ -148,7 +148,7 @@ pub enum RunError {
         counts: Vec<usize>,
     },
     /// Shards that are not complete.
-    #[error("{} of {of} shards in {} are not complete: {}", missing.len(), path.display(), told(missing))]
+    #[error("{} of {of} shards in {} are not complete: {}", missing.len(), path.display(), name_missing(missing))]
     MissingShards {
         /// The folder of the run.
         path: PathBuf,
@@ -321,7 +321,7 @@ fn in_words(counts: &[usize]) -> String {
 }
 
 /// Shards with what there is of them.
-fn told(missing: &[(Shard, String)]) -> String {
+fn name_missing(missing: &[(Shard, String)]) -> String {
     let each = missing.iter();
     let words: Vec<String> = each
         .map(|(shard, words)| format!("{shard} ({words})"))

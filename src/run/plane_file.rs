@@ -37,7 +37,7 @@ pub(super) fn of_map(map: &RegimeMap, sweep: &str) -> String {
         "not_followed": untraced.collect::<Vec<_>>(),
         "interrupted": map.interrupted,
     });
-    written(&map.plane, &map.curves, sweep, ("map", map_json))
+    compose(&map.plane, &map.curves, sweep, ("map", map_json))
 }
 
 /// The file of curves that were begun at a row.
@@ -53,10 +53,10 @@ pub(super) fn of_curves(
         "before": origin.before,
         "after": origin.after,
     });
-    written(plane, curves, sweep, ("row", row))
+    compose(plane, curves, sweep, ("row", row))
 }
 
-fn written(plane: &Plane, curves: &[Curve], sweep: &str, (key, value): (&str, Value)) -> String {
+fn compose(plane: &Plane, curves: &[Curve], sweep: &str, (key, value): (&str, Value)) -> String {
     let sides = plane.sides().iter();
     let sides = sides.map(|side| json!([side.parameter, side.from, side.to]));
     let mut all = json!({

@@ -76,13 +76,13 @@ pub(super) fn write(run: &Path) -> Result<(), RunError> {
     let there = PARTS
         .into_iter()
         .filter(|(name, ..)| run.join(name).exists());
-    let crate_of_run = described(&manifest, &there.collect::<Vec<_>>());
+    let crate_of_run = describe(&manifest, &there.collect::<Vec<_>>());
     let text = serde_json::to_string_pretty(&crate_of_run)? + "\n";
     write_atomically(&run.join(NAME), text.as_bytes())
 }
 
 /// The metadata of a run with these parts.
-fn described(manifest: &Value, parts: &[(&str, &str, &str)]) -> Value {
+fn describe(manifest: &Value, parts: &[(&str, &str, &str)]) -> Value {
     let id = |id: &str| json!({ "@id": id });
     let ids = |names: &mut dyn Iterator<Item = &str>| names.map(id).collect::<Vec<_>>();
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();

@@ -87,7 +87,8 @@ fn noise_rate(system: &dyn System, state: &[f64], width: &dyn Fn(usize) -> f64) 
 mod tests {
     use super::*;
     use crate::space::Axis;
-    use crate::system::{Interpretation, TypedModel, registry};
+    use crate::system::test_families::built_in;
+    use crate::system::{Interpretation, TypedModel};
 
     #[test]
     fn rates_of_a_duffing_oscillator_are_those_of_its_linearisation() {
@@ -98,10 +99,7 @@ mod tests {
             ("f_c", 0.3),
             ("sigma2", 0.1),
         ];
-        let system = registry::find("coulomb")
-            .unwrap()
-            .system_with(&values)
-            .unwrap();
+        let system = built_in("coulomb", &values);
         let axis = Axis::uniform(-2.0, 2.0, 40).unwrap();
         let space = CellSpace::new(vec![axis.clone(), axis]).unwrap();
         // ω² = α + 3μx² = 3.5 at x = 1; the damping of the energy is κ.
@@ -132,10 +130,7 @@ mod tests {
     #[test]
     fn nothing_oscillates_in_one_dimension() {
         let values = [("a", 1.0), ("sigma2", 0.1)];
-        let system = registry::find("bistable")
-            .unwrap()
-            .system_with(&values)
-            .unwrap();
+        let system = built_in("bistable", &values);
         let space = CellSpace::new(vec![Axis::uniform(-2.0, 2.0, 40).unwrap()]).unwrap();
         let rates = local_rates(&*system, &space, &[1.0]).unwrap();
         assert!((rates.fastest - 2.0).abs() < 1e-6, "{rates:?}");

@@ -1,6 +1,13 @@
 //! Families and systems that tests share.
 
+use std::sync::Arc;
+
 use super::{Facts, Family, Lanes, Noise, Path, SwitchingSurface, System, registry};
+
+/// A built-in model with these values.
+pub(crate) fn built_in(model: &str, values: &[(&str, f64)]) -> Arc<dyn System> {
+    registry::find(model).unwrap().system_with(values).unwrap()
+}
 
 /// The paper's first example along its friction level.
 pub(crate) fn coulomb() -> Family {

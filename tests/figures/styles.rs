@@ -191,38 +191,20 @@ fn a_sheet_of_all_figures_in_all_styles() {
         width: FigureWidth::Single,
         ..FigureStyle::default()
     };
-    let others = [
-        (
-            "serif",
-            FigureStyle {
-                font: Typeface::Serif,
-                title: false,
-                ..single
-            },
-        ),
-        (
-            "dark",
-            FigureStyle {
-                ground: Ground::Dark,
-                ..single
-            },
-        ),
-        (
-            "grey",
-            FigureStyle {
-                colours: ColourMap::Grey,
-                ..single
-            },
-        ),
-        (
-            "log",
-            FigureStyle {
-                scale: ColourScale::Log,
-                ..single
-            },
-        ),
+    type Change = fn(&mut FigureStyle);
+    let others: [(&str, Change); 4] = [
+        ("serif", |style| {
+            (style.font, style.title) = (Typeface::Serif, false);
+        }),
+        ("dark", |style| style.ground = Ground::Dark),
+        ("grey", |style| style.colours = ColourMap::Grey),
+        ("log", |style| style.scale = ColourScale::Log),
     ];
-    styles.extend(others.map(|(name, style)| (name.to_owned(), style)));
+    styles.extend(others.map(|(name, change)| {
+        let mut style = single;
+        change(&mut style);
+        (name.to_owned(), style)
+    }));
     let text = std::fs::read_to_string("sweeps/coulomb_fc.toml").unwrap();
     let fewer = "sweep.points=21 cells.x.count=40 cells.y.count=60 locate.grid_check=off";
     let (_, swept) = crate::common::sweeps::swept(&text, fewer);

@@ -70,8 +70,8 @@ pub(super) fn run(
     if arguments.out.is_none() {
         stored.renew_figures()?;
     }
-    let told = crossed.iter().map(|one| one.told(plane, curves));
-    let text = told.collect::<String>() + &super::super::jobs::files(files);
+    let summaries = crossed.iter().map(|one| one.summary(plane, curves));
+    let text = summaries.collect::<String>() + &super::super::jobs::files(files);
     super::super::conclude(&text, Outcome::Complete, output.path())
 }
 
@@ -109,7 +109,7 @@ fn crossed(
 
 impl Crossed {
     /// What it located, and how far that is from the curves.
-    fn told(&self, plane: Option<&Plane>, curves: &[Curve]) -> String {
+    fn summary(&self, plane: Option<&Plane>, curves: &[Curve]) -> String {
         let Some(plane) = plane else {
             return String::new();
         };

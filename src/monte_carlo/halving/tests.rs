@@ -1,7 +1,7 @@
 use super::*;
 use crate::monte_carlo::relaxation;
 use crate::space::Axis;
-use crate::system::registry;
+use crate::system::test_families::built_in;
 use std::sync::Arc;
 
 fn oscillator(kappa: f64, f_c: f64) -> (Arc<dyn System>, CellSpace, Relaxation) {
@@ -11,10 +11,7 @@ fn oscillator(kappa: f64, f_c: f64) -> (Arc<dyn System>, CellSpace, Relaxation) 
         ("f_c", f_c),
         ("sigma2", 0.01),
     ];
-    let system = registry::find("coulomb")
-        .unwrap()
-        .system_with(&values)
-        .unwrap();
+    let system = built_in("coulomb", &values);
     let axis = Axis::uniform(-4.0, 4.0, 40).unwrap();
     let space = CellSpace::new(vec![axis.clone(), axis]).unwrap();
     let never = Cancellation::new();

@@ -216,7 +216,7 @@ fn accuracy<'a>(run: &ComparedRun<'a>) -> Columns<'a, (&'a Accuracy, &'a Accurac
 }
 
 /// What was measured of error against time.
-fn measured<'a>(run: &ComparedRun<'a>) -> Vec<(&'a Accuracy, &'a AccuracyPoint)> {
+fn accuracy_points<'a>(run: &ComparedRun<'a>) -> Vec<(&'a Accuracy, &'a AccuracyPoint)> {
     let all = run.comparison.accuracy.iter();
     all.flat_map(|all| all.points.iter().map(move |one| (all, one)))
         .collect()
@@ -289,7 +289,7 @@ pub(super) fn agreement_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
 /// # Errors
 /// [`RunError::Table`].
 pub(super) fn accuracy_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
-    accuracy(run).csv(&measured(run))
+    accuracy(run).csv(&accuracy_points(run))
 }
 
 /// `densities.csv`: the densities on the common cells.
@@ -330,7 +330,7 @@ pub(super) fn compare_json(run: &ComparedRun<'_>) -> Result<String, RunError> {
         "distances": distances(run).json(&records(run, |value| &value.pairs)),
         "agreement": agreement(run).json(&records(run, |value| &value.agreement)),
         "measures": measures_json(run),
-        "accuracy": accuracy(run).json(&measured(run)),
+        "accuracy": accuracy(run).json(&accuracy_points(run)),
     });
     Ok(serde_json::to_string_pretty(&object)? + "\n")
 }

@@ -111,13 +111,13 @@ pub fn export(
     path: &Path,
 ) -> Result<(), RunError> {
     match format {
-        ExportFormat::Csv => csv::write(&result.subject, &solved(result)?, path),
+        ExportFormat::Csv => csv::write(&result.subject, &solved_points(result)?, path),
         ExportFormat::NetCdf => netcdf::write(&DataSet::new(result, title)?, path),
     }
 }
 
 /// The points with a density.
-fn solved(result: &SweepResult) -> Result<Vec<&Point>, RunError> {
+fn solved_points(result: &SweepResult) -> Result<Vec<&Point>, RunError> {
     let points = result.points.iter();
     let solved: Vec<&Point> = points.filter(|point| !point.densities.is_empty()).collect();
     if solved.is_empty() {
@@ -133,7 +133,7 @@ impl DataSet {
     /// # Errors
     /// [`RunError::NothingToExport`] when no point has a density; [`RunError::Table`].
     pub fn new(result: &SweepResult, title: &str) -> Result<Self, RunError> {
-        let points = &solved(result)?;
+        let points = &solved_points(result)?;
         let family = &result.subject.family;
         let parameter = family.parameter();
         let values = points.iter().map(|point| point.value).collect();

@@ -65,12 +65,12 @@ fn header(data: &DataSet) -> Result<Vec<u8>, String> {
     if let Some((name, _)) = dimensions.iter().find(|one| one.1 > LONGEST) {
         return Err(format!("dimension `{name}` is too long"));
     }
-    let begin = written(data, &dimensions, 0).len() as u64;
-    Ok(written(data, &dimensions, begin))
+    let begin = encode(data, &dimensions, 0).len() as u64;
+    Ok(encode(data, &dimensions, begin))
 }
 
 /// The header if the numbers begin at the byte `begin`; its length does not depend on that.
-fn written(data: &DataSet, dimensions: &[(&str, usize)], begin: u64) -> Vec<u8> {
+fn encode(data: &DataSet, dimensions: &[(&str, usize)], begin: u64) -> Vec<u8> {
     let mut header = Header(OFFSET_64.to_vec());
     // No dimension grows.
     header.number(0);

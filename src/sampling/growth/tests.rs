@@ -4,8 +4,8 @@ use super::*;
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::sampling::{Integrator, TransitionMatrix, pilot};
 use crate::space::Axis;
-use crate::system::registry;
 use crate::system::test_families::OneState;
+use crate::system::test_families::built_in;
 use std::sync::Arc;
 
 fn square(half: f64, count: usize) -> CellSpace {
@@ -32,10 +32,7 @@ fn coulomb(f_c: f64) -> Arc<dyn System> {
         ("f_c", f_c),
         ("sigma2", 0.01),
     ];
-    registry::find("coulomb")
-        .unwrap()
-        .system_with(&values)
-        .unwrap()
+    built_in("coulomb", &values)
 }
 
 fn sample(
@@ -174,10 +171,7 @@ fn neither_threads_nor_seeds_change_the_matrix() {
 fn only_cells_that_can_be_reached_are_sampled() {
     // Without noise to speak of, a strongly damped oscillator stays in the cells about the origin.
     let values = [("kappa", 1.0), ("f_c", 0.0), ("sigma2", 1e-4)];
-    let system = registry::find("coulomb")
-        .unwrap()
-        .system_with(&values)
-        .unwrap();
+    let system = built_in("coulomb", &values);
     let space = square(3.0, 60);
     let sampled = sample(
         &*system,

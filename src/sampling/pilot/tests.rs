@@ -4,6 +4,7 @@ use super::*;
 use crate::cancellation::Cancellation;
 use crate::space::Axis;
 use crate::system::registry;
+use crate::system::test_families::built_in;
 
 fn square(half: f64, count: usize) -> CellSpace {
     let axis = Axis::uniform(-half, half, count).unwrap();
@@ -14,10 +15,7 @@ fn square(half: f64, count: usize) -> CellSpace {
 fn a_linear_oscillator_is_measured_and_gets_its_steps() {
     // σ²/(2κ) = 0.25 is the variance of both axes, ω = 1, γ = 0.02.
     let values = [("kappa", 0.02), ("f_c", 0.0), ("sigma2", 0.01)];
-    let system = registry::find("coulomb")
-        .unwrap()
-        .system_with(&values)
-        .unwrap();
+    let system = built_in("coulomb", &values);
     let space = square(3.0, 50);
     let pilot = pilot(&*system, &space, 1, &Cancellation::new()).unwrap();
     assert!((pilot.frequency - 1.0).abs() < 1e-6, "{pilot:?}");
@@ -50,10 +48,7 @@ fn a_linear_oscillator_is_measured_and_gets_its_steps() {
 #[test]
 fn visited_cells_hold_the_mass_on_any_number_of_threads() {
     let values = [("a", 1.0), ("sigma2", 0.02)];
-    let system = registry::find("bistable")
-        .unwrap()
-        .system_with(&values)
-        .unwrap();
+    let system = built_in("bistable", &values);
     let space = CellSpace::new(vec![Axis::uniform(-2.0, 2.0, 40).unwrap()]).unwrap();
     let run = |threads| {
         let pool = rayon::ThreadPoolBuilder::new()

@@ -8,6 +8,7 @@ use crate::sampling::{Integrator, SampledTransitions, SamplingOptions, sample_tr
 use crate::space::{Axis, CellSpace};
 use crate::stationary::{Options, Outcome, Solver, SteadyState};
 use crate::system::test_families::OneState;
+use crate::system::test_families::built_in;
 use crate::system::{System, registry};
 
 fn options(map_step: f64, samples: usize) -> SamplingOptions {
@@ -72,10 +73,7 @@ fn without_friction() -> (CellSpace, SampledTransitions, Vec<f64>) {
         ("f_c", 0.0),
         ("sigma2", 0.01),
     ];
-    let system = registry::find("coulomb")
-        .unwrap()
-        .system_with(&values)
-        .unwrap();
+    let system = built_in("coulomb", &values);
     let axis = Axis::uniform(-3.0, 3.0, 50).unwrap();
     let space = CellSpace::new(vec![axis.clone(), axis]).unwrap();
     let seed = space.find(&[0.1, 0.1]).unwrap();
