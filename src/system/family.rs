@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::{
-    AtPhase, Enclosed, FixedPointFault, Linearised, MeasureLevel, Model, NoiseKind, ParameterValues,
-    PassageQuestion, Path, Quantity, Region, SpectrumQuestion, System, SystemError, Tangent,
-    TangentFault,
+    AtPhase, Enclosed, FixedPointFault, Linearised, MeasureLevel, Model, NoiseKind,
+    ParameterValues, PassageQuestion, Path, Quantity, Region, SpectrumQuestion, System,
+    SystemError, Tangent, TangentFault,
 };
 
 /// Systems along a path: one number in, a bound system out, with names and symbols for tables and figures.
