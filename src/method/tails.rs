@@ -2,7 +2,7 @@
 //! means and deviations. What leaves within one relaxation time is missing inside as well, and counts as beyond.
 
 use crate::density::{EstimatedMoments, Moments};
-use crate::space::CellSpace;
+use crate::space::{Axis, CellSpace};
 
 /// Distance from an open end, in lengths over which the density falls by e, from which on it falls as it would were
 /// there no end: nearer to it what leaves is missing.
@@ -53,14 +53,12 @@ fn tail(cells: &[(f64, f64)]) -> Tail {
 
 /// The tails at the ends of every axis from the masses of all cells; nothing at ends that are `closed`.
 pub(super) fn tails(space: &CellSpace, mass: &[f64], closed: &[[bool; 2]]) -> Vec<[Tail; 2]> {
-    let axes = space.axes().iter().enumerate();
-    let mut along: Vec<Vec<(f64, f64)>> = axes
-        .map(|(_, axis)| {
-            (0..axis.count())
-                .map(|cell| (0.0, axis.width(cell)))
-                .collect()
-        })
-        .collect();
+    let empty = |axis: &Axis| {
+        (0..axis.count())
+            .map(|cell| (0.0, axis.width(cell)))
+            .collect()
+    };
+    let mut along: Vec<Vec<(f64, f64)>> = space.axes().iter().map(empty).collect();
     for (cell, &mass) in mass.iter().enumerate() {
         for (axis, cells) in along.iter_mut().enumerate() {
             cells[space.position(cell, axis)].0 += mass;

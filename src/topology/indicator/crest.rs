@@ -64,8 +64,9 @@ fn flanks(estimated: &EstimatedDensity, field: &Field<'_>, along: usize) -> Vec<
         nearest.filter(|one| distance(one) <= reach).copied()
     };
     let mut found = Vec::new();
-    for line in 1..axis.count().saturating_sub(1) {
-        for here in &tops[line] {
+    let inner = tops.iter().enumerate().skip(1);
+    for (line, own) in inner.take(axis.count().saturating_sub(2)) {
+        for here in own {
             let (Some(left), Some(right)) = (near(line - 1, here), near(line + 1, here)) else {
                 continue;
             };
