@@ -47,14 +47,14 @@ impl TypedEquations {
 
 /// Nothing, if deviations on so many axes are worked out.
 fn fit(axes: usize, is_smooth: bool, facts: &Facts) -> Result<(), TangentFault> {
+    if facts.phase.is_some() || facts.period.is_some() || (axes > 1 && !facts.turns.is_empty()) {
+        return Err(TangentFault::Turns);
+    }
     if axes > 2 {
         return Err(TangentFault::Axes { axes });
     }
     if !is_smooth {
         return Err(TangentFault::Rough);
-    }
-    if facts.phase.is_some() || facts.period.is_some() || (axes > 1 && !facts.turns.is_empty()) {
-        return Err(TangentFault::Turns);
     }
     Ok(())
 }
