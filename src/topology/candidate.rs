@@ -16,6 +16,9 @@ const ABSENT_LISTED: usize = 4;
 /// How many components of each kind are looked at between the cells at most.
 const MOST_LOOKED: usize = 48;
 
+/// Up to so many cells from a kink a peak may stand on it.
+const NEAR_KINK: f64 = 3.0;
+
 /// Extrema found from different cells closer than this, in widths of a cell, are one.
 const ONE_PLACE: f64 = 0.05;
 
@@ -62,11 +65,16 @@ pub(super) fn judge(
                 .map(|refined| refined.unless_known(&mut places, estimated));
             let (persistence, standard_error, mut judgement) = match refined {
                 Some((height, error)) => {
-                    let (height, error) = match of_averages(estimated, &component) {
-                        Some((least, error)) if least - error > height => (least, error),
-                        _ => (height.max(0.0), error),
+                    let judged = |(height, error): (f64, f64)| {
+                        (height.max(0.0), error, limits.judge_exact(height, error))
                     };
-                    (height, error, limits.judge_exact(height, error))
+                    let proof = of_averages(estimated, &component).map(judged);
+                    let is_present = |one: &(_, _, Judgement)| one.2.verdict == Verdict::Present;
+                    let between = judged((height, error));
+                    match proof.filter(is_present) {
+                        Some(proof) if !is_present(&between) => proof,
+                        _ => between,
+                    }
                 }
                 None => {
                     let error = noise(estimated, &component);
@@ -93,13 +101,18 @@ pub(super) fn judge(
 /// What the averages over cells alone prove of a component of a marginal, with its error: between two cells of a lower
 /// average than a cell between them the density has a maximum, which rises at least as high above its surroundings as
 /// the averages differ. The reconstruction may miss it where the density falls to nothing within few cells. `None` over
-/// two axes, where a path past a saddle may lead between the cells, and in the outermost cells, where an extremum may
-/// be no more than the end of a slope.
+/// two axes, where a path past a saddle may lead between the cells, in the outermost cells, where an extremum may be no
+/// more than the end of a slope, and beside a kink, whose own slopes say when a peak on it vanishes.
 fn of_averages(estimated: &EstimatedDensity, component: &Component) -> Option<(f64, f64)> {
     let errors = &estimated.standard_error;
     let death = component.death?;
     let inner = 2..errors.len().saturating_sub(2);
-    let is_sure = estimated.density.axes.len() == 1 && inner.contains(&component.birth);
+    let axis = estimated.density.axes.first()?;
+    let reach = NEAR_KINK * axis.width(component.birth);
+    let mut kinks = estimated.structure.kinks.iter();
+    let is_kinked = kinks.any(|kink| (kink.at - axis.centre(component.birth)).abs() < reach);
+    let is_marginal = estimated.density.axes.len() == 1;
+    let is_sure = is_marginal && !is_kinked && inner.contains(&component.birth);
     is_sure.then(|| {
         (
             component.persistence,
