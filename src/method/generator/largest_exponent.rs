@@ -4,9 +4,10 @@
 //! Where the derivatives of drift and noise are the same everywhere it is that of a linear equation. Else the angle of
 //! small deviations is an axis of harmonics ([`crate::system`], `tangent`): the density of state and angle is solved
 //! for as any other, and the exponent is the mean rate of stretching. The last harmonics are made to decay as fast as
-//! advection feeds them, or their end would throw back what it should let pass. The error adds up what more harmonics change and
-//! what the cells do: the difference to fewer of them, twice what half of the dissipation changes, and the rate at
-//! which mass leaves them.
+//! advection feeds them, or their end would throw back what it should let pass. The error adds up what more harmonics
+//! change, twice, since errors fall by a power of their number and at least halve from one number to the next; and what
+//! the cells do: the difference to fewer of them, twice what half of the dissipation changes, and the rate at which
+//! mass leaves them.
 
 use std::sync::Arc;
 
@@ -187,7 +188,7 @@ impl Angles<'_> {
             return Ok(None);
         };
         let by_cells = (found.mean - on_coarse).abs() + 2.0 * found.by_scheme.abs();
-        let error = by_harmonics + by_cells + found.escape;
+        let error = 2.0 * by_harmonics + by_cells + found.escape;
         // What is not a number is not small.
         let is_known = error <= UNKNOWN * found.size;
         let value = found.mean;
