@@ -15,6 +15,7 @@
 //! | rates along an axis of modes | `modes.rs` |
 //! | the matrix | `assemble.rs`, `columns.rs` |
 //! | a noise that moves an axis and an angle at once | `shared_noise.rs` |
+//! | decay of the last harmonics of an angle without noise | `spectral_viscosity.rs` |
 //! | the matrix of a process that ends in a region | `absorbing.rs` |
 //! | masses of cells and moments from the unknowns | `masses.rs` |
 //! | one axis: the steady state by quadrature, its extrema from the equations | `one_axis/` |
@@ -41,6 +42,7 @@ mod sampler;
 mod scheme;
 mod shared_noise;
 mod smooth;
+mod spectral_viscosity;
 
 pub(crate) use absorbing::levels;
 pub use absorbing::{AbsorbingGenerator, Closure, assemble_absorbing};
@@ -54,6 +56,7 @@ pub use one_axis::{End, OneAxis, one_axis, profile};
 pub(crate) use resolution::{Resolution, resolution};
 pub use scheme::{AdvectiveScheme, Dissipation};
 pub(crate) use shared_noise::{add_shared_noise, at_nodes};
+pub(crate) use spectral_viscosity::add_spectral_viscosity;
 
 use sprs::CsMat;
 

@@ -224,6 +224,21 @@ impl Tangent {
         out
     }
 
+    /// How fast deviations in the direction of the last axis of a batch turn, in 1/t.
+    pub(crate) fn turning(&self, states: &[Lanes]) -> Lanes {
+        let (batch, mut out) = (self.slopes.run(states), [0.0; LANES]);
+        for (lane, out) in out.iter_mut().enumerate() {
+            let (sine, cosine) = states[2][lane].sin_cos();
+            let [xx, xy, yx, yy] = [0, 1, 2, 3].map(|entry| batch.a[entry][lane]);
+            *out = yx * cosine * cosine - xy * sine * sine + (yy - xx) * sine * cosine;
+            for &(number, _) in &self.shared {
+                let [pull, along, across] = self.slopes.pull(&batch, number, lane, (sine, cosine));
+                *out -= along * across * pull * pull;
+            }
+        }
+        out
+    }
+
     /// The noises that move a state and the angle at once: the axis, and the product of both amplitudes.
     pub(crate) fn shared(&self) -> impl Iterator<Item = (usize, impl Fn(&[Lanes]) -> Lanes)> {
         let own = self.system.noises().len();
@@ -252,17 +267,7 @@ impl System for Tangent {
     fn drift(&self, time: f64, states: &[Lanes], drift: &mut [Lanes]) {
         let axes = self.slopes.axes;
         self.system.drift(time, &states[..axes], &mut drift[..axes]);
-        let batch = self.slopes.run(states);
-        for lane in 0..LANES {
-            let (sine, cosine) = states[2][lane].sin_cos();
-            let [xx, xy, yx, yy] = [0, 1, 2, 3].map(|entry| batch.a[entry][lane]);
-            let mut turn = yx * cosine * cosine - xy * sine * sine + (yy - xx) * sine * cosine;
-            for &(number, _) in &self.shared {
-                let [pull, along, across] = self.slopes.pull(&batch, number, lane, (sine, cosine));
-                turn -= along * across * pull * pull;
-            }
-            drift[axes][lane] = turn;
-        }
+        drift[axes] = self.turning(states);
     }
 
     fn noises(&self) -> &[Noise] {

@@ -3,9 +3,11 @@
 //! On one axis it is the mean of a function of the state, and so it is where deviations along an axis never leave it.
 //! Where the derivatives of drift and noise are the same everywhere it is that of a linear equation. Else the angle of
 //! small deviations is an axis of harmonics ([`crate::system`], `tangent`): the density of state and angle is solved
-//! for as any other, and the exponent is the mean rate of stretching. Its error adds up what more harmonics change and
-//! what the cells do: the difference to fewer of them, twice what half of the dissipation changes, and the rate at
-//! which mass leaves them.
+//! for as any other, and the exponent is the mean rate of stretching. The last harmonics are made to decay as fast as
+//! advection feeds them, or their end would throw back what it should let pass. The error adds up what more harmonics
+//! change, twice, since errors fall by a power of their number and at least halve from one number to the next; and what
+//! the cells do: the difference to fewer of them, twice what half of the dissipation changes, and the rate at which
+//! mass leaves them.
 
 use std::sync::Arc;
 
@@ -15,8 +17,8 @@ use crate::continuation::measure::{DIVERGENCE, EXPONENT};
 use crate::continuation::{Finding, Measure, MeasureKind, SolveReport};
 use crate::exponent::{Exponent, largest};
 use crate::generator::{
-    Dissipation, Generator, GeneratorOptions, add_shared_noise, assemble, assemble_damped,
-    at_nodes, unknown_moments,
+    Dissipation, Generator, GeneratorOptions, add_shared_noise, add_spectral_viscosity, assemble,
+    assemble_damped, at_nodes, unknown_moments,
 };
 use crate::method::MethodError;
 use crate::space::{Axis, CellSpace};
@@ -25,6 +27,13 @@ use crate::system::{HALF_TURN, Lanes, System, Tangent};
 
 /// Harmonics of the angle that are tried one after the other.
 const HARMONICS: [usize; 8] = [3, 4, 6, 8, 12, 16, 22, 30];
+
+/// Harmonics with which the mean rate of turning is worked out.
+const FEW: usize = 2;
+
+/// Numbers of harmonics after which a change that neither is small nor falls by this factor is given up.
+const ENOUGH: usize = 3;
+const FALL: f64 = 0.7;
 
 /// Share of the change before it that the last one counts for at least: two numbers may agree by chance.
 const CHANCE: f64 = 0.1;
@@ -170,14 +179,16 @@ impl Angles<'_> {
     /// The exponent with its error; `None` where cells and harmonics do not resolve state and angle.
     pub(super) fn exponent(&self, space: &CellSpace) -> Result<Option<Exponent>, MethodError> {
         let [coarse, fine] = cells(space);
-        let Some((harmonics, on_coarse, by_harmonics)) = self.harmonics(&coarse, &fine)? else {
+        let turning = self.turning(&coarse)?;
+        let of_angle = self.harmonics(&coarse, &fine, turning)?;
+        let Some((harmonics, on_coarse, by_harmonics)) = of_angle else {
             return Ok(None);
         };
-        let Some(found) = self.solve(&fine, harmonics, true)? else {
+        let Some(found) = self.solve(&fine, (harmonics, turning), true)? else {
             return Ok(None);
         };
         let by_cells = (found.mean - on_coarse).abs() + 2.0 * found.by_scheme.abs();
-        let error = by_harmonics + by_cells + found.escape;
+        let error = 2.0 * by_harmonics + by_cells + found.escape;
         // What is not a number is not small.
         let is_known = error <= UNKNOWN * found.size;
         let value = found.mean;
@@ -189,6 +200,7 @@ impl Angles<'_> {
         &self,
         coarse: &[Axis],
         fine: &[Axis],
+        turning: f64,
     ) -> Result<Option<(usize, f64, f64)>, MethodError> {
         let mut tried: Vec<(usize, f64)> = Vec::new();
         let mut changes: Vec<f64> = Vec::new();
@@ -197,7 +209,7 @@ impl Angles<'_> {
             if by_harmonics.is_some() && !self.is_affordable(fine, harmonics)? {
                 break;
             }
-            let Some(now) = self.solve(coarse, harmonics, false)? else {
+            let Some(now) = self.solve(coarse, (harmonics, turning), false)? else {
                 return Ok(None);
             };
             if let Some((_, fewer)) = tried.last() {
@@ -208,6 +220,12 @@ impl Angles<'_> {
                 by_harmonics = Some(change);
                 if change <= CHANGE * now.size {
                     break;
+                }
+                let is_enough = tried.len() >= ENOUGH;
+                // What is not a number does not fall.
+                let is_falling = last <= FALL * earlier || last <= UNKNOWN * now.size;
+                if is_enough && !is_falling {
+                    return Ok(None);
                 }
             }
             tried.push((harmonics, now.mean));
@@ -223,20 +241,45 @@ impl Angles<'_> {
         Ok(cost.is_ok_and(|cost| cost.factors.operations <= MOST_OPERATIONS))
     }
 
-    fn solve(
-        &self,
-        cells: &[Axis],
-        harmonics: usize,
-        is_judged: bool,
-    ) -> Result<Option<Stretching>, MethodError> {
-        let space = with_angle(cells, harmonics)?;
-        let generator = self.assemble(&space, Dissipation::Full)?;
+    /// Mean over the states of the fastest rate at which deviations turn there, in 1/t. The density of the states does
+    /// not depend on harmonics.
+    fn turning(&self, cells: &[Axis]) -> Result<f64, MethodError> {
+        let space = with_angle(cells, FEW)?;
+        let generator = self.assemble(&space, 0.0, Dissipation::Full)?;
+        let mut solver = self.solver(&space);
+        let steady = solver.solve(&generator.matrix, &generator.escape, None)?;
+        let rates = at_nodes(&space, &|states| self.tangent.turning(states));
+        let angles = 2 * FEW + 1;
+        let states = rates.chunks(angles).zip(steady.mass.chunks(angles));
+        Ok(states
+            .map(|(rates, mass)| {
+                let fastest = rates
+                    .iter()
+                    .fold(0.0, |most: f64, rate| most.max(rate.abs()));
+                fastest * mass.iter().sum::<f64>()
+            })
+            .sum())
+    }
+
+    fn solver(&self, space: &CellSpace) -> RateSolver {
         let rates = RateOptions {
             tolerance: TOLERANCE,
             memory_limit_bytes: (self.options.memory_limit * 1e9) as u64,
             ..RateOptions::default()
         };
-        let mut solver = RateSolver::new(space.clone(), rates).cancelled_by(self.cancellation);
+        RateSolver::new(space.clone(), rates).cancelled_by(self.cancellation)
+    }
+
+    fn solve(
+        &self,
+        cells: &[Axis],
+        (harmonics, turning): (usize, f64),
+        is_judged: bool,
+    ) -> Result<Option<Stretching>, MethodError> {
+        let space = with_angle(cells, harmonics)?;
+        let decay = harmonics as f64 * turning;
+        let generator = self.assemble(&space, decay, Dissipation::Full)?;
+        let mut solver = self.solver(&space);
         let steady = solver.solve(&generator.matrix, &generator.escape, None)?;
         if !steady.info.converged {
             return Ok(None);
@@ -248,7 +291,7 @@ impl Angles<'_> {
         let mean = sum(&|q| q, &steady.mass);
         let by_scheme = match is_judged {
             true => {
-                let half = self.assemble(&space, Dissipation::Half)?;
+                let half = self.assemble(&space, decay, Dissipation::Half)?;
                 let change = solver.sensitivity_within(&half.matrix, &steady.mass, None, ROUGH)?;
                 sum(&|q| q - mean, &change)
             }
@@ -265,6 +308,7 @@ impl Angles<'_> {
     fn assemble(
         &self,
         space: &CellSpace,
+        decay: f64,
         dissipation: Dissipation,
     ) -> Result<Generator, MethodError> {
         let (tangent, scheme) = (&self.tangent, self.options.scheme);
@@ -280,6 +324,7 @@ impl Angles<'_> {
         for (axis, product) in tangent.shared() {
             add_shared_noise(&mut generator, space, axis, &product);
         }
+        add_spectral_viscosity(&mut generator, space, decay);
         Ok(generator)
     }
 }
