@@ -106,13 +106,17 @@ pub(super) fn judge(
 fn of_averages(estimated: &EstimatedDensity, component: &Component) -> Option<(f64, f64)> {
     let errors = &estimated.standard_error;
     let death = component.death?;
+    let [axis] = estimated.density.axes.as_slice() else {
+        return None;
+    };
     let inner = 2..errors.len().saturating_sub(2);
-    let axis = estimated.density.axes.first()?;
-    let reach = NEAR_KINK * axis.width(component.birth);
+    let (at, reach) = (
+        axis.centre(component.birth),
+        NEAR_KINK * axis.width(component.birth),
+    );
     let mut kinks = estimated.structure.kinks.iter();
-    let is_kinked = kinks.any(|kink| (kink.at - axis.centre(component.birth)).abs() < reach);
-    let is_marginal = estimated.density.axes.len() == 1;
-    let is_sure = is_marginal && !is_kinked && inner.contains(&component.birth);
+    let is_sure =
+        inner.contains(&component.birth) && !kinks.any(|kink| (kink.at - at).abs() < reach);
     is_sure.then(|| {
         (
             component.persistence,
