@@ -77,7 +77,7 @@ fn section(file: &StartingFile, images: &Path) -> Result<String, Box<dyn std::er
         )?;
     }
     let figures = Figures::of_sweep(&found, file.title(), &[]);
-    let (name, drawn) = match family.spectrum() {
+    let (name, drawn) = match &family.questions.spectrum {
         Some(_) => (format!("spectrogram_{}", family.axis(0)), "Spectrum"),
         None => (format!("diagram_{}", family.axis(0)), "Density"),
     };

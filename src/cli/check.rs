@@ -138,7 +138,7 @@ fn monte_carlo_costs(spec: &Sweep, cost: &MonteCarloCost) -> Vec<String> {
         ),
     };
     let mut costs = vec![format!("memory: {}", bytes_in_words(cost.bytes)), steps];
-    let passages = spec.problem.family().passages().len();
+    let passages = spec.problem.family().questions.passages.len();
     if passages > 0 {
         let options = &spec.settings.method.monte_carlo;
         let seconds = match options.longest_passage {
@@ -188,7 +188,7 @@ fn points(spec: &Sweep) -> String {
 /// What is worked out of a fixed point, with the exponents at both ends.
 fn exponent(spec: &Sweep) -> Option<String> {
     let family = spec.problem.family();
-    if family.largest_exponent() {
+    if family.questions.largest_exponent {
         return Some(along_density(spec));
     }
     let state = fixed_point_in_words(family)?;

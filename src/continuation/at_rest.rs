@@ -31,7 +31,7 @@ pub(super) fn beside_fixed_point(
 ) -> Option<Doubt> {
     let of_model = &family.model().axes;
     // Where no fixed point is named, rest at zero is the one that oscillators have.
-    let state = family.fixed_point().map(<[f64]>::to_vec);
+    let state = family.questions.fixed_point.clone();
     let state = state.unwrap_or_else(|| vec![0.0; of_model.len()]);
     let own = observable.axes();
     let mut pairs = own.iter().zip(place).zip(axes);

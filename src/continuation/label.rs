@@ -115,7 +115,7 @@ impl Label {
                 of: one.asked.measure.clone(),
                 before: if one.rises { "< 0" } else { "> 0" }.to_owned(),
                 after: if one.rises { "> 0" } else { "< 0" }.to_owned(),
-                change: match (family.fixed_point().is_some(), one.rises) {
+                change: match (family.questions.fixed_point.is_some(), one.rises) {
                     (true, true) => "D-bifurcation: the fixed point loses its stability",
                     (true, false) => "D-bifurcation: the fixed point becomes stable",
                     (false, true) => "D-bifurcation: paths under the same noise run apart",

@@ -132,7 +132,7 @@ impl Root {
 /// The levels of which the crossings are wanted: those that are asked for, and zero for the exponent along the density
 /// and for the numbers that say how a spectrum changes.
 pub(super) fn asked_of(family: &Family) -> Vec<MeasureLevel> {
-    let question = family.spectrum().into_iter();
+    let question = family.questions.spectrum.iter();
     let powers = question.flat_map(|question| {
         let pairs = question.pairs.iter().filter(|(one, other)| one == other);
         let names = pairs.map(|&pair| question.name(pair));
@@ -143,11 +143,11 @@ pub(super) fn asked_of(family: &Family) -> Vec<MeasureLevel> {
             })
         })
     });
-    let exponent = family.largest_exponent().then(|| MeasureLevel {
+    let exponent = family.questions.largest_exponent.then(|| MeasureLevel {
         measure: EXPONENT.word.to_owned(),
         level: 0.0,
     });
-    let mut all = family.levels().to_vec();
+    let mut all = family.questions.levels.to_vec();
     let new: Vec<MeasureLevel> = exponent
         .into_iter()
         .chain(powers)

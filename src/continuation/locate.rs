@@ -70,7 +70,7 @@ pub(super) fn label_points(
     let rows = rows.map(|row| Label::Bifurcation(Box::new(row)));
     let levels = crossings(points, &asked_of(&subject.family), options.tolerance);
     // Where the exponent of a fixed point passes zero is known better from itself, and asked for with it.
-    let is_of_point = subject.family.fixed_point().is_some();
+    let is_of_point = subject.family.questions.fixed_point.is_some();
     let levels = levels
         .into_iter()
         .filter(|row| !(is_of_point && row.is_d_bifurcation()));

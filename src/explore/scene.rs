@@ -191,7 +191,11 @@ fn axes(family: &Family) -> Vec<Axis> {
 
 fn moments(family: &Family) -> Vec<String> {
     let axes = family.model().axes.iter().map(|axis| axis.symbol.as_str());
-    let averaged = family.averaged().iter().map(|quantity| quantity.symbol());
+    let averaged = family
+        .questions
+        .averaged
+        .iter()
+        .map(|quantity| quantity.symbol());
     axes.chain(averaged).map(str::to_owned).collect()
 }
 

@@ -45,7 +45,7 @@ pub enum ExponentError {
 
 /// Exponents of the fixed point that a family asks for; `None` where it asks for none.
 pub fn of_family(family: &Family, coordinate: f64) -> Option<Result<Exponent, ExponentError>> {
-    let state = family.fixed_point()?;
+    let state = family.questions.fixed_point.as_deref()?;
     let linear = family.linearised(coordinate, state);
     Some(
         linear

@@ -72,7 +72,7 @@ impl DensitySource for MethodSource {
     fn open(&self, cancellation: &Cancellation) -> Box<dyn Session> {
         let session = self.source().open(cancellation);
         let family = &self.subject().family;
-        if family.fixed_point().is_none() {
+        if family.questions.fixed_point.is_none() {
             return session;
         }
         Box::new(WithExponents {

@@ -150,7 +150,7 @@ pub(crate) fn check_averaged(family: &Family, space: &CellSpace) -> Result<(), B
     let (from, to) = family.ends();
     for value in [from, 0.5 * (from + to), to] {
         let values = family.values_at(value)?;
-        for quantity in family.averaged() {
+        for quantity in &family.questions.averaged {
             let bound = quantity.bind(&values)?;
             let map = QuantityMoments::new(space, &bound, Detail::Fine, &[]);
             if let Some(state) = map.undefined() {

@@ -13,7 +13,10 @@ use crate::system::{Family, FixedPointFault};
 
 /// The columns of exponents, where a family asks for them.
 pub(super) fn exponent_columns(family: &Family) -> impl Iterator<Item = MeasureColumn> {
-    let wanted: &[MeasureKind] = match (family.fixed_point(), family.largest_exponent()) {
+    let wanted: &[MeasureKind] = match (
+        &family.questions.fixed_point,
+        family.questions.largest_exponent,
+    ) {
         (Some(_), _) => &[EXPONENT],
         (None, true) => &[EXPONENT, DIVERGENCE],
         (None, false) => &[],

@@ -175,8 +175,9 @@ fn has_densities(problem: &Problem) -> Result<(), MethodError> {
         system.facts().autonomous()?;
     }
     let family = problem.family();
-    let asks =
-        !family.passages().is_empty() || family.slow_modes() > 0 || family.spectrum().is_some();
+    let asks = !family.questions.passages.is_empty()
+        || family.questions.slow_modes > 0
+        || family.questions.spectrum.is_some();
     if let (true, Err(MethodError::Turn { axis })) = (asks, has_no_turns(problem)) {
         return Err(MethodError::TurnOfQuestion { axis });
     }

@@ -31,7 +31,7 @@ impl Problem {
         masses: Masses,
     ) -> Result<Arc<Maps>, MethodError> {
         let family = self.family();
-        let mut all = family.quantities().iter().chain(family.averaged());
+        let mut all = family.quantities().iter().chain(&family.questions.averaged);
         if all.any(|quantity| family.moves(quantity)) {
             return Ok(Arc::new(self.maps_at(value, kinked, masses)?));
         }
@@ -53,7 +53,8 @@ impl Problem {
         let planes = planes(kinked);
         let bind = |quantity: &Arc<crate::system::Quantity>| quantity.bind(&values);
         let bound: Result<Vec<BoundQuantity>, _> = family.quantities().iter().map(bind).collect();
-        let averaged: Result<Vec<BoundQuantity>, _> = family.averaged().iter().map(bind).collect();
+        let averaged: Result<Vec<BoundQuantity>, _> =
+            family.questions.averaged.iter().map(bind).collect();
         let (bound, averaged) = (bound?, averaged?);
         let coordinate = |axis: usize| match axis.checked_sub(space.dimension()) {
             None => Coordinate::Axis(axis),

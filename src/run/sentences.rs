@@ -248,7 +248,7 @@ fn solve_in_words(family: &Family, finding: &Finding) -> String {
 
 /// The state of which the exponent is wanted, such as `x = 0, y = 0`; `None` where none is.
 pub(crate) fn fixed_point_in_words(family: &Family) -> Option<String> {
-    let state = family.fixed_point()?.iter().enumerate();
+    let state = family.questions.fixed_point.as_deref()?.iter().enumerate();
     let named = state.map(|(axis, x)| format!("{} = {x}", family.axis(axis)));
     Some(named.collect::<Vec<_>>().join(", "))
 }
@@ -258,7 +258,11 @@ fn fixed_point(family: &Family) -> String {
 }
 
 fn passage_name(family: &Family, passage: usize) -> &str {
-    family.passages().get(passage).map_or("", |one| &one.name)
+    family
+        .questions
+        .passages
+        .get(passage)
+        .map_or("", |one| &one.name)
 }
 
 /// Why a passage has no numbers, and what to do.

@@ -88,7 +88,7 @@ pub(super) fn fluctuation_files(
     family: &Family,
     points: &[Point],
 ) -> Result<Vec<(&'static str, String)>, RunError> {
-    let Some(question) = family.spectrum() else {
+    let Some(question) = &family.questions.spectrum else {
         return Ok(Vec::new());
     };
     let frequencies = question.band.frequencies();
@@ -144,7 +144,7 @@ pub(super) fn read_fluctuations(
     family: &Family,
     points: &mut [Point],
 ) -> Result<(), RunError> {
-    if family.spectrum().is_none() {
+    if family.questions.spectrum.is_none() {
         return Ok(());
     }
     let tables = [

@@ -17,7 +17,7 @@ impl Settings {
     /// # Errors
     /// A report with the place of what cannot be.
     pub(super) fn find_bins(&mut self, cancellation: &Cancellation) -> Result<(), Report> {
-        if self.family.quantities().is_empty() && self.family.averaged().is_empty() {
+        if self.family.quantities().is_empty() && self.family.questions.averaged.is_empty() {
             return Ok(());
         }
         let space = cell_space(&self.document, &self.family, &self.axes, self.method.kind)

@@ -21,10 +21,12 @@ impl Settings {
         let axes = equations.flat_map(|table| table.node.entries());
         let axes = axes.map(|entry| (entry.key.clone(), entry.key_place.clone()));
         let quantities = self.family.quantities().iter();
-        let quantities = quantities.chain(self.family.averaged()).filter_map(|one| {
-            let name = one.name();
-            Some((name.to_owned(), quantity_place(&self.document, name)?))
-        });
+        let quantities = quantities
+            .chain(&self.family.questions.averaged)
+            .filter_map(|one| {
+                let name = one.name();
+                Some((name.to_owned(), quantity_place(&self.document, name)?))
+            });
         let passages = root.find(&["passage"]).into_iter();
         let passages = passages.flat_map(|table| table.node.entries());
         let passages = passages.map(|entry| (entry.key.clone(), entry.key_place.clone()));

@@ -307,7 +307,12 @@ impl Settings {
 
     /// Replaces a highest frequency of spectra that is left to the program.
     fn find_frequencies(&mut self, cancellation: &Cancellation) -> Result<(), Report> {
-        let question = self.family.spectrum().filter(|one| one.band.to.is_none());
+        let question = self
+            .family
+            .questions
+            .spectrum
+            .as_ref()
+            .filter(|one| one.band.to.is_none());
         let Some(mut question) = question.cloned() else {
             return Ok(());
         };
@@ -325,7 +330,7 @@ impl Settings {
         question.band.to = Some(to);
         self.chosen
             .push(format!("spectra: frequencies up to {to} are looked at"));
-        self.family = self.family.clone().with_spectrum(Some(question));
+        self.family.questions.spectrum = Some(question);
         Ok(())
     }
 

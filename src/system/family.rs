@@ -4,9 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::{
-    AtPhase, Enclosed, FixedPointFault, Linearised, MeasureLevel, Model, NoiseKind,
-    ParameterValues, PassageQuestion, Path, Quantity, Region, SpectrumQuestion, System,
-    SystemError, Tangent, TangentFault,
+    AtPhase, Enclosed, FixedPointFault, Linearised, Model, NoiseKind, ParameterValues, Path,
+    Quantity, Questions, System, SystemError, Tangent, TangentFault,
 };
 
 /// Systems along a path: one number in, a bound system out, with names and symbols for tables and figures.
@@ -31,14 +30,8 @@ pub struct Family {
     walls: BTreeMap<usize, (f64, f64)>,
     /// Numbered on from the axes.
     quantities: Vec<Arc<Quantity>>,
-    averaged: Vec<Arc<Quantity>>,
-    regions: Vec<Region>,
-    passages: Vec<PassageQuestion>,
-    levels: Vec<MeasureLevel>,
-    fixed_point: Option<Vec<f64>>,
-    largest_exponent: bool,
-    slow_modes: usize,
-    spectrum: Option<Arc<SpectrumQuestion>>,
+    /// What is asked of the systems beside their densities.
+    pub questions: Questions,
 }
 
 impl Family {
@@ -64,14 +57,7 @@ impl Family {
             path,
             walls: BTreeMap::new(),
             quantities: Vec::new(),
-            averaged: Vec::new(),
-            regions: Vec::new(),
-            passages: Vec::new(),
-            levels: Vec::new(),
-            fixed_point: None,
-            largest_exponent: false,
-            slow_modes: 0,
-            spectrum: None,
+            questions: Questions::default(),
         };
         family.along()?;
         Ok(family)
@@ -108,41 +94,6 @@ impl Family {
         &self.walls
     }
 
-    /// The family with quantities of which mean and standard deviation are wanted.
-    #[must_use]
-    pub fn with_averaged(mut self, averaged: Vec<Arc<Quantity>>) -> Self {
-        self.averaged = averaged;
-        self
-    }
-
-    /// The family with named regions, and with questions of first passage.
-    #[must_use]
-    pub fn with_passages(mut self, regions: Vec<Region>, passages: Vec<PassageQuestion>) -> Self {
-        self.regions = regions;
-        self.passages = passages;
-        self
-    }
-
-    /// The family with levels of measures, of which the crossings are wanted.
-    #[must_use]
-    pub fn with_levels(mut self, levels: Vec<MeasureLevel>) -> Self {
-        self.levels = levels;
-        self
-    }
-
-    /// The family with a state of which the largest Lyapunov exponent is wanted: one that neither drift nor noise
-    /// moves, a coordinate an axis.
-    #[must_use]
-    pub fn with_fixed_point(mut self, state: Option<Vec<f64>>) -> Self {
-        self.fixed_point = state;
-        self
-    }
-
-    /// The state of which the largest Lyapunov exponent is wanted.
-    pub fn fixed_point(&self) -> Option<&[f64]> {
-        self.fixed_point.as_deref()
-    }
-
     /// The linear equation of small deviations from a state that neither drift nor noise moves, at a coordinate of
     /// the path.
     ///
@@ -159,19 +110,7 @@ impl Family {
         formulas.linearised(values.as_slice(), state)
     }
 
-    /// The family with the wish for the largest Lyapunov exponent along the stationary density.
-    #[must_use]
-    pub fn with_largest_exponent(mut self, wanted: bool) -> Self {
-        self.largest_exponent = wanted;
-        self
-    }
-
-    /// Whether the largest Lyapunov exponent along the stationary density is wanted.
-    pub fn largest_exponent(&self) -> bool {
-        self.largest_exponent
-    }
-
-    /// Why there is no such exponent at a coordinate of the path; `None` where there is one.
+    /// Why there is no largest Lyapunov exponent along the density at a coordinate of the path; `None` where there is one.
     pub(crate) fn tangent_fault(&self, coordinate: f64) -> Option<TangentFault> {
         let formulas = self.model.formulas();
         let Some(formulas) = formulas.filter(|_| self.model.noise_kind() == NoiseKind::White)
@@ -199,46 +138,7 @@ impl Family {
         formulas.tangent(system.clone(), values.as_slice(), scales)
     }
 
-    /// The levels of measures of which the crossings are wanted.
-    pub fn levels(&self) -> &[MeasureLevel] {
-        &self.levels
-    }
-
-    /// The family with a number of slow modes of which the decay rates are wanted.
-    #[must_use]
-    pub fn with_slow_modes(mut self, wanted: usize) -> Self {
-        self.slow_modes = wanted;
-        self
-    }
-
-    /// How many slow modes are wanted; 0 for none.
-    pub fn slow_modes(&self) -> usize {
-        self.slow_modes
-    }
-
-    /// The family with a question of fluctuations.
-    #[must_use]
-    pub fn with_spectrum(mut self, question: Option<SpectrumQuestion>) -> Self {
-        self.spectrum = question.map(Arc::new);
-        self
-    }
-
-    /// What is asked of fluctuations in the steady state.
-    pub fn spectrum(&self) -> Option<&SpectrumQuestion> {
-        self.spectrum.as_deref()
-    }
-
-    /// The regions that have names.
-    pub fn regions(&self) -> &[Region] {
-        &self.regions
-    }
-
-    /// The questions of first passage.
-    pub fn passages(&self) -> &[PassageQuestion] {
-        &self.passages
-    }
-
-    /// The same model and quantities with other values, along another path.
+    /// The same model, walls, quantities and questions with other values, along another path.
     ///
     /// # Errors
     /// As [`Family::new`].
@@ -247,29 +147,17 @@ impl Family {
         fixed: &[(&str, f64)],
         path: Path,
     ) -> Result<Self, SystemError> {
+        let Self { values, path, .. } = Self::new(self.model.clone(), fixed, path)?;
         Ok(Self {
-            walls: self.walls.clone(),
-            quantities: self.quantities.clone(),
-            averaged: self.averaged.clone(),
-            regions: self.regions.clone(),
-            passages: self.passages.clone(),
-            levels: self.levels.clone(),
-            fixed_point: self.fixed_point.clone(),
-            largest_exponent: self.largest_exponent,
-            slow_modes: self.slow_modes,
-            spectrum: self.spectrum.clone(),
-            ..Self::new(self.model.clone(), fixed, path)?
+            values,
+            path,
+            ..self.clone()
         })
     }
 
     /// The quantities that can be watched.
     pub fn quantities(&self) -> &[Arc<Quantity>] {
         &self.quantities
-    }
-
-    /// The quantities of which mean and standard deviation are wanted.
-    pub fn averaged(&self) -> &[Arc<Quantity>] {
-        &self.averaged
     }
 
     /// Whether a quantity changes along the path.
@@ -357,7 +245,12 @@ impl Family {
     /// averaged.
     pub(crate) fn averages(&self) -> impl Iterator<Item = &str> {
         let axes = self.states_on_lines().map(|(_, name)| name);
-        axes.chain(self.averaged.iter().map(|quantity| quantity.name()))
+        axes.chain(
+            self.questions
+                .averaged
+                .iter()
+                .map(|quantity| quantity.name()),
+        )
     }
 
     /// Axes that do not close on themselves, which angles and the phase of a forcing do, with their names.
@@ -396,10 +289,10 @@ impl Family {
 
     /// A system of the family's model, with the walls that reflect.
     pub(crate) fn within_walls(&self, system: Arc<dyn System>) -> Arc<dyn System> {
-        match self.walls.is_empty() {
-            true => system,
-            false => Arc::new(Enclosed::reflecting(system, &self.walls)),
+        if self.walls.is_empty() {
+            return system;
         }
+        Arc::new(Enclosed::reflecting(system, &self.walls))
     }
 
     /// The systems at both ends and in the middle: what is chosen once for a whole sweep is chosen for these.

@@ -95,9 +95,8 @@ fn problem(case: &Case, depth: f64) -> Problem {
     let model = model.build().unwrap();
     let averaged = AVERAGED.map(|(name, formula, _)| (name, Some(formula)));
     let averaged = quantities(&model, &averaged).unwrap();
-    let family = Family::new(model, &[], path)
-        .unwrap()
-        .with_averaged(averaged);
+    let mut family = Family::new(model, &[], path).unwrap();
+    family.questions.averaged = averaged;
     let axes = ranges(&*case.potential, depth)
         .map(|(from, to)| Axis::uniform(from, to, case.count).unwrap());
     let space = CellSpace::new(axes.to_vec()).unwrap();

@@ -25,7 +25,8 @@ fn linear(cells: usize) -> Problem {
     let read = quantities(&model, &FORMULAS).unwrap();
     let power = quantities(&model, &[("power", Some("y^2"))]).unwrap();
     let family = Family::new(model, &fixed, Path::parameter("f_c", 0.0, 0.0)).unwrap();
-    let family = family.with_quantities(read).with_averaged(power);
+    let mut family = family.with_quantities(read);
+    family.questions.averaged = power;
     let axis = Axis::uniform(-6.0, 6.0, cells).unwrap();
     let space = CellSpace::new(vec![axis.clone(), axis]).unwrap();
     let bins = [(0.0, 8.0), (0.0, 4.5), (-5.0, 5.0)];
@@ -142,7 +143,8 @@ fn every_method_has_the_exact_densities_of_quantities_where_damping_depends_on_e
     let power = quantities(&model, &[("power", Some("y^2"))]).unwrap();
     let fixed = [("b", b), ("sigma2", sigma2)];
     let family = Family::new(model, &fixed, Path::parameter("a", a, a)).unwrap();
-    let family = family.with_quantities(read).with_averaged(power);
+    let mut family = family.with_quantities(read);
+    family.questions.averaged = power;
     let axis = Axis::uniform(-3.0, 3.0, 50).unwrap();
     let space = CellSpace::new(vec![axis.clone(), axis]).unwrap();
     let bins = [(0.0, 4.0), (0.0, 2.8)].map(|(from, to)| Axis::uniform(from, to, 40).unwrap());

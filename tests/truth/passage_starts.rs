@@ -97,8 +97,8 @@ fn found(
         times: Vec::new(),
         quantiles: vec![0.5],
     };
-    let family = Family::new(model, &[], Path::parameter("s", 1.0, 1.0)).unwrap();
-    let family = family.with_passages(Vec::new(), vec![question]);
+    let mut family = Family::new(model, &[], Path::parameter("s", 1.0, 1.0)).unwrap();
+    family.questions.passages = vec![question];
     let space = CellSpace::new(axes).unwrap();
     let problem = Problem::new(family, space, vec![Observable::Marginal(0)]).unwrap();
     let source = GeneratorSource::new(&problem, &GeneratorMethodOptions::default()).unwrap();

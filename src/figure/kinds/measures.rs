@@ -117,7 +117,7 @@ fn levels(result: &SweepResult, measure: &MeasureSeries) -> Vec<Curve> {
         places: places.to_vec(),
         errors: Vec::new(),
     };
-    let asked = result.subject.family.levels().iter();
+    let asked = result.subject.family.questions.levels.iter();
     let own = asked.filter(|one| one.measure == measure.name);
     let lines = own.map(|one| {
         let name = format!("level {}", number(one.level));

@@ -44,7 +44,7 @@ fn draw(result: &SweepResult, asked: &Asked, print: &Print<'_>) -> Drawn {
         is_logarithmic: true,
         ..print.look
     };
-    let (is_logarithmic, places) = frequencies(family.spectrum()?);
+    let (is_logarithmic, places) = frequencies(family.questions.spectrum.as_ref()?);
     let columns: Vec<Option<Vec<f64>>> = points
         .iter()
         .map(|point| {
@@ -180,7 +180,11 @@ fn spectral_rows(result: &SweepResult, asked: &Asked) -> String {
 
 fn rows_of(result: &SweepResult, asked: &Asked) -> String {
     let family = &result.subject.family;
-    let frequencies = family.spectrum().map(|one| one.band.frequencies());
+    let frequencies = family
+        .questions
+        .spectrum
+        .as_ref()
+        .map(|one| one.band.frequencies());
     let frequencies = frequencies.unwrap_or_default();
     let rows = result.points.iter().flat_map(|point| {
         let known = of_point(point, asked).map(powers).unwrap_or_default();

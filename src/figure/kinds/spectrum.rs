@@ -53,7 +53,7 @@ pub(super) struct Asked {
 
 /// The spectra that a family asks for.
 pub(super) fn asked(family: &Family) -> Vec<Asked> {
-    let Some(question) = family.spectrum() else {
+    let Some(question) = &family.questions.spectrum else {
         return Vec::new();
     };
     let of_pair = |&(one, other): &(usize, usize)| {
@@ -119,7 +119,7 @@ fn draw_spectrum(
     asked: &Asked,
     print: &Print<'_>,
 ) -> Drawn {
-    let question = result.subject.family.spectrum()?;
+    let question = result.subject.family.questions.spectrum.as_ref()?;
     let (is_logarithmic, places) = frequencies(question);
     let lines: Vec<Line> = chosen
         .iter()
@@ -166,7 +166,7 @@ fn draw_correlation(
     asked: &Asked,
     print: &Print<'_>,
 ) -> Drawn {
-    let (step, _) = result.subject.family.spectrum()?.lags();
+    let (step, _) = result.subject.family.questions.spectrum.as_ref()?.lags();
     let lines: Vec<Line> = chosen
         .iter()
         .filter_map(|point| {

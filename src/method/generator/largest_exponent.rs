@@ -76,7 +76,7 @@ pub(super) fn add_largest_exponent(
 ) -> Result<(), MethodError> {
     let (subject, space) = (source.problem.subject(), source.problem.space());
     let family = &subject.family;
-    let (true, Some((unknowns, changes))) = (family.largest_exponent(), known) else {
+    let (true, Some((unknowns, changes))) = (family.questions.largest_exponent, known) else {
         return Ok(());
     };
     if subject.measures.is_empty() {

@@ -29,7 +29,7 @@ pub(super) fn add_passages(
     cancellation: &Cancellation,
 ) -> Result<(), MethodError> {
     let family = problem.family();
-    if family.passages().is_empty() || problem.subject().measures.is_empty() {
+    if family.questions.passages.is_empty() || problem.subject().measures.is_empty() {
         return Ok(());
     }
     let rates = RateOptions {
@@ -41,7 +41,7 @@ pub(super) fn add_passages(
         scheme: options.scheme,
     };
     let values = family.values_at(value)?;
-    for (number, question) in family.passages().iter().enumerate() {
+    for (number, question) in family.questions.passages.iter().enumerate() {
         let passage = Passage::bind(question, &values)?;
         let settings = (&generator, &rates);
         match timed(

@@ -30,8 +30,13 @@ pub(super) fn add_slow_modes(
     cancellation: &Cancellation,
 ) -> Result<(), MethodError> {
     let (subject, space) = (source.problem.subject(), source.problem.space());
-    let wanted = subject.family.slow_modes();
-    let switches = subject.family.passages().iter().any(|one| one.switching);
+    let wanted = subject.family.questions.slow_modes;
+    let switches = subject
+        .family
+        .questions
+        .passages
+        .iter()
+        .any(|one| one.switching);
     if (wanted == 0 && !switches) || subject.measures.is_empty() {
         return Ok(());
     }
@@ -80,7 +85,7 @@ fn add_switching(
 ) -> Result<(), MethodError> {
     let (family, space) = (source.problem.family(), source.problem.space());
     let values = family.values_at(value)?;
-    for (passage, question) in family.passages().iter().enumerate() {
+    for (passage, question) in family.questions.passages.iter().enumerate() {
         let PassageStart::Region(from) = &question.start else {
             continue;
         };

@@ -37,7 +37,9 @@ pub(super) fn add_spectra(
     let (subject, space) = (source.problem.subject(), source.problem.space());
     let Some(question) = subject
         .family
-        .spectrum()
+        .questions
+        .spectrum
+        .as_ref()
         .filter(|_| !subject.measures.is_empty())
     else {
         return Ok(());

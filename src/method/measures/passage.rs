@@ -10,7 +10,7 @@ use crate::system::{Family, PassageQuestion};
 
 /// The columns of all passages.
 pub(crate) fn passage_columns(family: &Family) -> Vec<MeasureColumn> {
-    family.passages().iter().flat_map(columns).collect()
+    family.questions.passages.iter().flat_map(columns).collect()
 }
 
 /// The columns of a passage: mean, standard deviation, rate, shares of exits, probabilities and quantiles.

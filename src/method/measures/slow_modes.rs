@@ -13,7 +13,7 @@ pub(super) fn columns(family: &Family) -> impl Iterator<Item = MeasureColumn> {
             of: number.to_string(),
         })
     };
-    (1..=family.slow_modes()).flat_map(of_mode)
+    (1..=family.questions.slow_modes).flat_map(of_mode)
 }
 
 /// The numbers of slow modes as measures.

@@ -9,7 +9,7 @@ use crate::system::Family;
 
 /// Five columns a power spectrum.
 pub(super) fn columns(family: &Family) -> impl Iterator<Item = MeasureColumn> {
-    let asked = family.spectrum().into_iter();
+    let asked = family.questions.spectrum.iter();
     asked.flat_map(move |question| {
         let pairs = question.pairs.iter().filter(|(one, other)| one == other);
         pairs.flat_map(move |&pair| {

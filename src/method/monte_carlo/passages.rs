@@ -40,11 +40,11 @@ impl Setting<'_> {
         cancellation: &Cancellation,
     ) -> Result<(), MethodError> {
         let family = self.problem.family();
-        if family.passages().is_empty() || self.problem.subject().measures.is_empty() {
+        if family.questions.passages.is_empty() || self.problem.subject().measures.is_empty() {
             return Ok(());
         }
         let values = family.values_at(value)?;
-        for (passage, question) in family.passages().iter().enumerate() {
+        for (passage, question) in family.questions.passages.iter().enumerate() {
             let asked = Passage::bind(question, &values)?;
             let found = self.follow(system, &asked, is_steady, cancellation)?;
             match found {

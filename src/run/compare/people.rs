@@ -241,7 +241,7 @@ pub(crate) fn compare_tables(run: &ComparedRun<'_>) -> Vec<CompareTable> {
         pairs(run, "Hellinger distance", |pair| &pair.distances.hellinger),
         agreement(run),
     ];
-    if !run.family().passages().is_empty() {
+    if !run.family().questions.passages.is_empty() {
         tables.push(passages(run));
     }
     tables

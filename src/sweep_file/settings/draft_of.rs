@@ -51,12 +51,16 @@ impl Settings {
             regions: self.regions_draft(),
             levels: self.levels_draft(),
             passages: self.passages_draft(),
-            exponent: match self.family.fixed_point() {
+            exponent: match self.family.questions.fixed_point {
                 Some(_) => Some(ExponentKind::FixedPoint),
-                None => (self.family.largest_exponent()).then_some(ExponentKind::Largest),
+                None => self
+                    .family
+                    .questions
+                    .largest_exponent
+                    .then_some(ExponentKind::Largest),
             },
             fixed_point: self.fixed_point_draft(),
-            slow_modes: Some(self.family.slow_modes()).filter(|&wanted| wanted > 0),
+            slow_modes: Some(self.family.questions.slow_modes).filter(|&wanted| wanted > 0),
             spectrum: super::spectrum::draft(&self.family),
             detect: self.detect.clone(),
             locate: self.locate.clone(),
@@ -125,7 +129,7 @@ impl Settings {
     }
 
     fn averaged(&self) -> Vec<(String, String)> {
-        let all = self.family.averaged().iter();
+        let all = self.family.questions.averaged.iter();
         let texts = all.map(|one| (one.name(), one.formula().unwrap_or(one.name())));
         texts
             .map(|(name, text)| (name.to_owned(), text.to_owned()))
@@ -133,18 +137,23 @@ impl Settings {
     }
 
     fn levels_draft(&self) -> Vec<(String, f64)> {
-        let levels = self.family.levels().iter();
+        let levels = self.family.questions.levels.iter();
         levels.map(|one| (one.measure.clone(), one.level)).collect()
     }
 
     fn fixed_point_draft(&self) -> Vec<(String, f64)> {
-        let state = self.family.fixed_point().unwrap_or_default();
+        let state = self
+            .family
+            .questions
+            .fixed_point
+            .as_deref()
+            .unwrap_or_default();
         let axes = self.family.model().axes.iter().zip(state);
         axes.map(|(axis, &x)| (axis.name.clone(), x)).collect()
     }
 
     fn regions_draft(&self) -> Vec<(String, String)> {
-        let regions = self.family.regions().iter();
+        let regions = self.family.questions.regions.iter();
         regions
             .map(|one| (one.name().to_owned(), one.text().to_owned()))
             .collect()
@@ -152,14 +161,14 @@ impl Settings {
 
     fn passages_draft(&self) -> Vec<PassageDraft> {
         let named = |region: &Region| {
-            let mut known = self.family.regions().iter();
+            let mut known = self.family.questions.regions.iter();
             match known.any(|one| one.name() == region.name()) {
                 true => region.name().to_owned(),
                 false => region.text().to_owned(),
             }
         };
         let axes = &self.family.model().axes;
-        let passages = self.family.passages().iter();
+        let passages = self.family.questions.passages.iter();
         let draft = passages.map(|one| PassageDraft {
             name: one.name.clone(),
             from: match &one.start {

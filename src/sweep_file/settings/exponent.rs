@@ -12,13 +12,12 @@ use crate::system::{Family, FixedPointFault, NoiseKind, TangentFault};
 const FIXED: &str = "give under `exponent.at` a state at which the drift and every noise are zero all along the sweep, or leave `[exponent]` out";
 
 /// Reads `[exponent]` into what a family is asked for.
-pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, family: Family) -> Family {
+pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, family: &mut Family) {
     if draft.exponent == Some(ExponentKind::Largest) {
-        let wanted = is_along_density(reader, draft, &family);
-        return family.with_largest_exponent(wanted);
+        family.questions.largest_exponent = is_along_density(reader, draft, family);
+    } else {
+        family.questions.fixed_point = fixed_point(reader, draft, family);
     }
-    let state = fixed_point(reader, draft, &family);
-    family.with_fixed_point(state)
 }
 
 /// Whether the exponent along the density can be worked out; what speaks against it is reported.

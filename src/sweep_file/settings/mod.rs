@@ -121,27 +121,25 @@ impl Settings {
             figure_names::check(&mut reader, &draft, &family, &watched.observables);
         }
         figures::check_style(&mut reader, &draft.figures.style);
-        let (Some(mut swept), Some(axes), Some(watched), Some(figures_at), true) =
+        let (Some(swept), Some(axes), Some(watched), Some(figures_at), true) =
             (swept, axes, watched, figures_at, reader.is_clean())
         else {
             return Err(reader.into_report());
         };
-        let family = swept.family.with_quantities(watched.quantities);
-        swept.family = family.with_averaged(watched.averaged);
-        swept.family = walls::read(&mut reader, &draft, swept.family, &axes);
-        let (regions, questions) = passages::read(&mut reader, &draft, swept.family.model());
-        swept.family = swept.family.with_passages(regions, questions);
-        swept.family = exponent::read(&mut reader, &draft, swept.family);
-        swept.family = relaxation::read(&mut reader, &draft, swept.family);
-        let question = spectrum::read(&mut reader, &draft, &swept.family);
-        swept.family = swept.family.with_spectrum(question);
-        let levels = levels::read(&mut reader, &draft, &swept.family, &watched.observables);
-        swept.family = swept.family.with_levels(levels);
-        let bins = quantities::read_bins(&mut reader, &draft, &swept.family);
+        let mut family = swept.family.with_quantities(watched.quantities);
+        family.questions.averaged = watched.averaged;
+        family = walls::read(&mut reader, &draft, family, &axes);
+        (family.questions.regions, family.questions.passages) =
+            passages::read(&mut reader, &draft, family.model());
+        exponent::read(&mut reader, &draft, &mut family);
+        family.questions.slow_modes = relaxation::read(&mut reader, &draft);
+        family.questions.spectrum = spectrum::read(&mut reader, &draft, &family);
+        family.questions.levels = levels::read(&mut reader, &draft, &family, &watched.observables);
+        let bins = quantities::read_bins(&mut reader, &draft, &family);
         if !reader.is_clean() {
             return Err(reader.into_report());
         }
-        let (model, parameter) = (swept.family.model(), swept.family.parameter());
+        let (model, parameter) = (family.model(), family.parameter());
         let title = || match &mapped {
             Some(map) => format!("{}, map of {parameter} and {}", model.title, map.parameter),
             None => format!("{}, sweep of {parameter}", model.title),
@@ -151,7 +149,7 @@ impl Settings {
             points: swept.points,
             map: mapped,
             curve: followed,
-            family: swept.family,
+            family,
             accuracy: draft.accuracy,
             chosen: Vec::new(),
             axes,

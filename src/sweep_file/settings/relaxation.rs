@@ -3,13 +3,12 @@
 use crate::sweep_file::diagnostic::Diagnostic;
 use crate::sweep_file::draft::{Draft, MethodKind};
 use crate::sweep_file::reader::Reader;
-use crate::system::Family;
 
-/// The family with the slow modes that are wanted. They are eigenvalues of the generator, which the other methods do
-/// not have.
-pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, family: Family) -> Family {
+/// How many slow modes are wanted; 0 for none. They are eigenvalues of the generator, which the other methods do not
+/// have.
+pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft) -> usize {
     let Some(wanted) = draft.slow_modes else {
-        return family;
+        return 0;
     };
     if draft.method.kind != MethodKind::Generator {
         let name = draft.method.kind.name();
@@ -22,5 +21,5 @@ pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, family: Family) -> Fa
             None => diagnostic,
         });
     }
-    family.with_slow_modes(wanted)
+    wanted
 }

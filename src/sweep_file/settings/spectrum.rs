@@ -108,7 +108,7 @@ fn number_of(
     }
     let axes = &family.model().axes;
     let axis = axes.iter().position(|axis| axis.name == name);
-    let mut quantities = family.quantities().iter().chain(family.averaged());
+    let mut quantities = family.quantities().iter().chain(&family.questions.averaged);
     let quantity = quantities.find(|one| one.name() == name && one.phase().is_none());
     let found = axis
         .map(|axis| Fluctuating::Axis(axis, name.to_owned()))
@@ -116,7 +116,7 @@ fn number_of(
     let Some(found) = found else {
         let names = axes.iter().map(|axis| axis.name.as_str());
         let names: Vec<&str> = names
-            .chain(family.averaged().iter().map(|one| one.name()))
+            .chain(family.questions.averaged.iter().map(|one| one.name()))
             .collect();
         let title = format!(
             "`{}` is no axis and no quantity that is watched",
@@ -148,7 +148,7 @@ fn refuse(reader: &mut Reader<'_>, key: &[&str], diagnostic: Diagnostic) {
 
 /// What a complete file says.
 pub(super) fn draft(family: &Family) -> SpectrumDraft {
-    let Some(question) = family.spectrum() else {
+    let Some(question) = &family.questions.spectrum else {
         return SpectrumDraft::default();
     };
     let names = question.pairs.iter().map(|&pair| question.name(pair));

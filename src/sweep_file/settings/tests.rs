@@ -104,13 +104,13 @@ fn a_passage_may_end_in_one_of_several_regions() {
         + "[regions]\nfar = \"x > 8\"\n[passage]\nout = { start = { x = 2, v = 0 }, until = [\"far\", \"x < 0.5\"] }\n";
     let settings = parse(&text, &[]).unwrap();
     let labels = |settings: &Settings| {
-        let question = &settings.family.passages()[0];
+        let question = &settings.family.questions.passages[0];
         let all = (0..question.exits.len()).map(|part| question.exit_label(part));
         all.collect::<Vec<_>>()
     };
     assert_eq!(labels(&settings), ["far", "2"]);
     assert_eq!(
-        settings.family.passages()[0].until.text(),
+        settings.family.questions.passages[0].until.text(),
         "(far) or (x < 0.5)"
     );
     let written = settings.to_toml();
@@ -136,9 +136,9 @@ fn rates_between_two_states_are_of_two_regions_by_the_generator() {
     let passage = "[passage]\nout = { from = \"x < 1\", to = \"x > 8\", switching = \"on\" }\n";
     let text = format!("{WALLED}{passage}");
     let settings = parse(&text, &[]).unwrap();
-    assert!(settings.family.passages()[0].switching);
+    assert!(settings.family.questions.passages[0].switching);
     let again = parse(&settings.to_toml(), &[]).unwrap();
-    assert!(again.family.passages()[0].switching);
+    assert!(again.family.questions.passages[0].switching);
     let refused = |text: &str, sets: &[&str]| parse(text, sets).unwrap_err().to_string();
     let sampled = refused(&text, &["method.kind=monte-carlo"]);
     assert!(

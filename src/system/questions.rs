@@ -1,0 +1,27 @@
+//! What is asked of a family of systems beside its densities.
+
+use std::sync::Arc;
+
+use super::{MeasureLevel, PassageQuestion, Quantity, Region, SpectrumQuestion};
+
+/// What is asked of the systems of a [`Family`](super::Family) beside their densities. By default nothing is.
+#[derive(Debug, Clone, Default)]
+pub struct Questions {
+    /// Quantities of which mean and standard deviation are wanted.
+    pub averaged: Vec<Arc<Quantity>>,
+    /// Regions that have names.
+    pub regions: Vec<Region>,
+    /// Questions of first passage.
+    pub passages: Vec<PassageQuestion>,
+    /// Levels of measures of which the crossings are wanted.
+    pub levels: Vec<MeasureLevel>,
+    /// A state of which the largest Lyapunov exponent is wanted: one that neither drift nor noise moves, a coordinate
+    /// an axis.
+    pub fixed_point: Option<Vec<f64>>,
+    /// Whether the largest Lyapunov exponent along the stationary density is wanted.
+    pub largest_exponent: bool,
+    /// How many slow modes are wanted of which decay rates are given; 0 for none.
+    pub slow_modes: usize,
+    /// What is asked of fluctuations in the steady state.
+    pub spectrum: Option<SpectrumQuestion>,
+}
