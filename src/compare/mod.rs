@@ -86,7 +86,7 @@ pub struct ComparedValue {
 
 impl ComparedValue {
     /// The distances of two methods.
-    pub fn pair(
+    pub(crate) fn pair(
         &self,
         first: Method,
         second: Option<Method>,

@@ -225,7 +225,7 @@ impl Label {
     }
 
     /// The D-bifurcation, if it is one.
-    pub fn d_bifurcation(&self) -> Option<&LevelCrossing> {
+    pub(crate) fn d_bifurcation(&self) -> Option<&LevelCrossing> {
         match self {
             Self::Level(crossing) if crossing.is_d_bifurcation() => Some(crossing),
             _ => None,
@@ -241,7 +241,7 @@ impl Label {
     }
 
     /// Whether it is an end of the sweep.
-    pub fn is_end(&self) -> bool {
+    pub(crate) fn is_end(&self) -> bool {
         matches!(self, Self::End { .. })
     }
 }

@@ -47,7 +47,7 @@ impl LevelCrossing {
     }
 
     /// What changes in which power spectrum, where it is a number of one that passes zero.
-    pub fn spectral(&self) -> Option<(SpectralChange, &str)> {
+    pub(crate) fn spectral(&self) -> Option<(SpectralChange, &str)> {
         if self.asked.level != 0.0 {
             return None;
         }
@@ -58,14 +58,14 @@ impl LevelCrossing {
     }
 
     /// Whether it is the largest Lyapunov exponent that passes zero.
-    pub fn is_d_bifurcation(&self) -> bool {
+    pub(crate) fn is_d_bifurcation(&self) -> bool {
         self.asked.measure == EXPONENT.word && self.asked.level == 0.0
     }
 }
 
 /// How the shape of a power spectrum changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SpectralChange {
+pub(crate) enum SpectralChange {
     /// The maximum at frequency zero becomes a minimum, or a minimum a maximum.
     AtZero,
     /// A maximum at a frequency above zero is born beside a minimum, or vanishes with it.

@@ -76,7 +76,7 @@ pub use finding::{Finding, PassageFault, ShiftedQuantity, SteadyClass};
 pub use fluctuations::Fluctuations;
 pub use grid::CheckedIndicator;
 pub use label::{Label, Located, RowWords, Zero};
-pub use levels::{LevelCrossing, SpectralChange};
+pub use levels::LevelCrossing;
 pub use measure::{Measure, MeasureColumn, MeasureKind};
 pub use observer::Observer;
 pub use point::Point;
@@ -179,7 +179,7 @@ impl SweepResult {
     }
 
     /// Largest Hellinger distance between neighbouring densities that was accepted; `None` with fewer than two.
-    pub fn largest_distance(&self) -> Option<f64> {
+    pub(crate) fn largest_distance(&self) -> Option<f64> {
         let distances = self.points.iter().filter_map(|point| point.distance);
         distances.reduce(f64::max)
     }

@@ -32,7 +32,7 @@ impl Shard {
     }
 
     /// Its number, from 1.
-    pub fn number(self) -> usize {
+    pub(crate) fn number(self) -> usize {
         self.number
     }
 

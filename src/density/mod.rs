@@ -75,7 +75,7 @@ impl Observable {
     }
 
     /// Symbols of its axes, with `_{}` and `^{}`, for systems of a family.
-    pub fn symbols(self, family: &Family) -> Vec<&str> {
+    pub(crate) fn symbols(self, family: &Family) -> Vec<&str> {
         let axes = self.axes();
         axes.into_iter()
             .map(|axis| family.axis_symbol(axis))

@@ -24,7 +24,7 @@ pub struct Exponent {
 
 impl Exponent {
     /// Whether it is below zero beyond its error: almost every path that starts near the fixed point ends in it.
-    pub fn attracts(&self) -> bool {
+    pub(crate) fn attracts(&self) -> bool {
         self.value + self.error < 0.0
     }
 }
@@ -44,7 +44,10 @@ pub enum ExponentError {
 }
 
 /// Exponents of the fixed point that a family asks for; `None` where it asks for none.
-pub fn of_family(family: &Family, coordinate: f64) -> Option<Result<Exponent, ExponentError>> {
+pub(crate) fn of_family(
+    family: &Family,
+    coordinate: f64,
+) -> Option<Result<Exponent, ExponentError>> {
     let state = family.questions.fixed_point.as_deref()?;
     let linear = family.linearised(coordinate, state);
     Some(

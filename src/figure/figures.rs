@@ -98,7 +98,7 @@ impl<'a> Figures<'a> {
     }
 
     /// The kinds of figures of a sweep, whether it has such a figure or not: what names begin with.
-    pub fn kinds(&self) -> &[&'static str] {
+    pub(crate) fn kinds(&self) -> &[&'static str] {
         &self.kinds
     }
 

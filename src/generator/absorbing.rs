@@ -25,7 +25,7 @@ use border::{Beyond, Border, GridLine};
 
 /// The generator on the cells outside of a region.
 #[derive(Debug, Clone)]
-pub struct AbsorbingGenerator {
+pub(crate) struct AbsorbingGenerator {
     /// Entries of Q, `n × n` over all cells of the space, per unit time: row, column, rate. A place may have several,
     /// which sum. Cells inside the region are coupled to none, and have one.
     pub rates: Vec<(usize, usize, f64)>,
@@ -42,7 +42,7 @@ pub struct AbsorbingGenerator {
 
 impl AbsorbingGenerator {
     /// Q by columns.
-    pub fn matrix(&self) -> CsMat<f64> {
+    pub(crate) fn matrix(&self) -> CsMat<f64> {
         let cells = self.kept.len();
         // Entries by their columns.
         let mut starts = vec![0; cells + 1];
@@ -81,7 +81,7 @@ impl AbsorbingGenerator {
 
 /// How stencils go on past a border. What the two differ by is an error of the border.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Closure {
+pub(crate) enum Closure {
     /// By a polynomial through four cells.
     Fourth,
     /// By a polynomial through three cells.
@@ -92,7 +92,7 @@ pub enum Closure {
 ///
 /// # Errors
 /// As [`super::assemble`], and [`GeneratorError::NotFinite`] for a level that has no value at a node.
-pub fn assemble_absorbing(
+pub(crate) fn assemble_absorbing(
     system: &dyn System,
     space: &CellSpace,
     level: &BoundQuantity,

@@ -75,7 +75,7 @@ pub fn unknown_moments(space: &CellSpace, unknowns: &[f64]) -> Vec<(f64, f64)> {
 /// Unknowns whose sums end at walls that reflect. The density is not zero there: the midpoint rule in the cell
 /// coordinate misses a twenty-fourth of the slope at the wall (Euler and Maclaurin), which weights of the last cells
 /// make good to fourth order.
-pub fn summed_to_walls<'a>(
+pub(crate) fn summed_to_walls<'a>(
     system: &dyn System,
     space: &CellSpace,
     unknowns: &'a [f64],

@@ -45,12 +45,13 @@ mod smooth;
 mod spectral_viscosity;
 
 pub(crate) use absorbing::levels;
-pub use absorbing::{AbsorbingGenerator, Closure, assemble_absorbing};
+pub(crate) use absorbing::{AbsorbingGenerator, Closure, assemble_absorbing};
 pub use assemble::assemble;
 pub(crate) use assemble::assemble_damped;
 pub use derivative::assemble_derivative;
 pub use grading::automatic_grading;
-pub use masses::{cell_masses, summed_to_walls, unknown_moments};
+pub(crate) use masses::summed_to_walls;
+pub use masses::{cell_masses, unknown_moments};
 pub(crate) use one_axis::exponent_at;
 pub use one_axis::{End, OneAxis, one_axis, profile};
 pub(crate) use resolution::{Resolution, resolution};

@@ -78,7 +78,7 @@ impl<'a> SweepJob<'a> {
     }
 
     /// Which shard it is; `None` of a whole sweep.
-    pub fn number(&self) -> Option<Shard> {
+    pub(crate) fn number(&self) -> Option<Shard> {
         match self.part {
             Part::Shard(shard) => Some(shard),
             _ => None,

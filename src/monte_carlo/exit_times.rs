@@ -91,7 +91,7 @@ impl ExitTimes {
     }
 
     /// Integrator steps of all paths.
-    pub fn steps(&self) -> u64 {
+    pub(crate) fn steps(&self) -> u64 {
         self.blocks.iter().map(|block| block.steps).sum()
     }
 

@@ -44,7 +44,7 @@ impl PathRun {
     ///
     /// # Errors
     /// [`MonteCarloError`].
-    pub fn over_turns(
+    pub(crate) fn over_turns(
         system: &dyn System,
         space: &CellSpace,
         turns: f64,
@@ -73,7 +73,7 @@ impl PathRun {
     }
 
     /// Time that the path covers.
-    pub fn time(&self) -> f64 {
+    pub(crate) fn time(&self) -> f64 {
         self.steps as f64 * self.time_step
     }
 

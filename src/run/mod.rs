@@ -137,7 +137,6 @@ pub(crate) use number::{format_number, format_with_error};
 pub use plane_file::{StoredPlane, StoredPlaneContent};
 pub(crate) use points_table::points_csv;
 pub(crate) use provenance::Provenance;
-pub use recompute::Recomputed;
 pub use sentences::finding_in_words;
 #[cfg(feature = "cli")]
 pub(crate) use sentences::fixed_point_in_words;

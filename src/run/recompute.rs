@@ -11,7 +11,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// A point that was solved again.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Recomputed {
+pub(crate) struct Recomputed {
     /// The parameter value.
     pub value: f64,
     /// Total variation between what is stored and what was found now, the largest of all watched densities.

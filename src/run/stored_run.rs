@@ -127,13 +127,13 @@ impl StoredRun {
     }
 
     /// When the run was begun, in UTC (ISO 8601); `None` where it does not say.
-    pub fn started(&self) -> Option<&str> {
+    pub(crate) fn started(&self) -> Option<&str> {
         self.manifest.made["started"].as_str()
     }
 
     /// The sweep file as it was typed, word for word, with what was set on top of it; `None` for runs of early
     /// versions.
-    pub fn typed(&self) -> Option<SweepText> {
+    pub(crate) fn typed(&self) -> Option<SweepText> {
         self.manifest.typed.as_ref().map(Typed::text)
     }
 
@@ -207,7 +207,10 @@ impl StoredRun {
     ///
     /// # Errors
     /// [`RunError::Read`], [`RunError::Column`] and [`RunError::Row`].
-    pub fn checks(&self, subject: &Subject) -> Result<Option<Vec<CheckedIndicator>>, RunError> {
+    pub(crate) fn checks(
+        &self,
+        subject: &Subject,
+    ) -> Result<Option<Vec<CheckedIndicator>>, RunError> {
         let path = self.path.join("checks.csv");
         let there = path.is_file();
         there.then(|| read_checks(&path, subject)).transpose()

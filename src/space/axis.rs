@@ -262,7 +262,7 @@ impl Axis {
     }
 
     /// Whether all cells have the same width.
-    pub fn is_uniform(&self) -> bool {
+    pub(crate) fn is_uniform(&self) -> bool {
         !self.is_modes() && self.pieces.iter().all(|piece| piece.terms.is_empty())
     }
 }

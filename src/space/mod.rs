@@ -27,7 +27,7 @@ pub use cells::CellSpace;
 pub use grading::Grading;
 pub(crate) use hermite::NORMAL_RANGE;
 pub(crate) use series::MOST_MODES;
-pub use series::Series;
+pub(crate) use series::Series;
 
 /// Why an axis or a cell space could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -16,7 +16,7 @@ pub(crate) const MOST_MODES: usize = 128;
 /// What carries the density along an axis in place of cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Series {
+pub(crate) enum Series {
     /// Legendre polynomials over the range: for states that stay in it and have no noise.
     Legendre,
     /// Hermite polynomials times the normal density that a linear filter of white noise has.

@@ -126,7 +126,7 @@ impl Sweep {
     }
 
     /// Names of the methods whose solves a run of this sweep may hold.
-    pub fn methods(&self) -> Vec<&'static str> {
+    pub(crate) fn methods(&self) -> Vec<&'static str> {
         match &self.own {
             Some(own) => vec![own.method],
             None => MethodKind::ALL.map(MethodKind::name).into(),

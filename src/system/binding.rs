@@ -122,7 +122,7 @@ impl Model {
     ///
     /// # Errors
     /// [`SystemError::UnknownParameter`] or [`SystemError::OutOfRange`].
-    pub fn with(
+    pub(crate) fn with(
         &self,
         values: &ParameterValues,
         name: &str,

@@ -90,7 +90,7 @@ impl Family {
     }
 
     /// The walls that reflect, by axes: a lower and an upper one, infinite where there is none.
-    pub fn walls(&self) -> &BTreeMap<usize, (f64, f64)> {
+    pub(crate) fn walls(&self) -> &BTreeMap<usize, (f64, f64)> {
         &self.walls
     }
 
@@ -156,7 +156,7 @@ impl Family {
     }
 
     /// The quantities that can be watched.
-    pub fn quantities(&self) -> &[Arc<Quantity>] {
+    pub(crate) fn quantities(&self) -> &[Arc<Quantity>] {
         &self.quantities
     }
 

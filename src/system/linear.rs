@@ -18,7 +18,7 @@ impl Linearised {
     /// Fokker-Planck equation of the linear one but for its growth, so that g(-d) is minus this rate: where it is
     /// positive, γ > d and the density vanishes at the fixed point, where it is negative it is infinite there. In one
     /// dimension γ - 1 = 2 (a - b²)/b². (Moments: L. Arnold, *Random Dynamical Systems*, Springer 1998, section 6.2.)
-    pub fn thinning(&self) -> f64 {
+    pub(crate) fn thinning(&self) -> f64 {
         let trace = |m: &[Vec<f64>]| (0..m.len()).map(|i| m[i][i]).sum::<f64>();
         let of_square = |m: &[Vec<f64>]| {
             let pairs = (0..m.len()).flat_map(|i| (0..m.len()).map(move |j| (i, j)));

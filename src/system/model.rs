@@ -175,7 +175,7 @@ impl Model {
 
     /// The model with names for formulas of its coordinates and parameters, which quantities that are watched may use.
     #[must_use]
-    pub fn with_definitions(self, definitions: Vec<(String, String)>) -> Self {
+    pub(crate) fn with_definitions(self, definitions: Vec<(String, String)>) -> Self {
         Self {
             definitions,
             ..self
@@ -201,14 +201,14 @@ impl Model {
 
     /// The model with the words that say where it comes from.
     #[must_use]
-    pub fn with_source(self, source: impl Into<String>) -> Self {
+    pub(crate) fn with_source(self, source: impl Into<String>) -> Self {
         let source = source.into();
         Self { source, ..self }
     }
 
     /// The model with what a user should know, one paragraph a string.
     #[must_use]
-    pub fn with_notes<S: Into<String>>(self, notes: impl IntoIterator<Item = S>) -> Self {
+    pub(crate) fn with_notes<S: Into<String>>(self, notes: impl IntoIterator<Item = S>) -> Self {
         let notes = notes.into_iter().map(Into::into).collect();
         Self { notes, ..self }
     }

@@ -50,7 +50,7 @@ impl Noise {
     }
 
     /// Amplitudes of a batch, `states[axis][lane]`.
-    pub fn amplitudes(&self, time: f64, states: &[Lanes]) -> Lanes {
+    pub(crate) fn amplitudes(&self, time: f64, states: &[Lanes]) -> Lanes {
         match &self.amplitude {
             Amplitude::Constant(amplitude) => [*amplitude; LANES],
             Amplitude::OfState(amplitude) => {

@@ -24,7 +24,7 @@ pub struct PassageQuestion {
 impl PassageQuestion {
     /// What columns call a part of the region that ends the passage: its name, or its number from 1 on where the
     /// question itself gives it.
-    pub fn exit_label(&self, part: usize) -> String {
+    pub(crate) fn exit_label(&self, part: usize) -> String {
         let known = self.exits.get(part).map(Region::name);
         let number = (part + 1).to_string();
         match known {

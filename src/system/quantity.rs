@@ -24,7 +24,7 @@ pub struct Quantity {
 
 /// An axis of the state at a phase of the forcing, in place of the whole period.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AtPhase {
+pub(crate) struct AtPhase {
     /// The axis.
     pub axis: usize,
     /// The phase, in periods, from 0 to below 1.
@@ -252,7 +252,7 @@ impl Quantity {
     }
 
     /// An axis of a model at a phase of its forcing; `None` where the model has no such axis or no phase.
-    pub fn at_phase(model: &Model, at: AtPhase) -> Option<Self> {
+    pub(crate) fn at_phase(model: &Model, at: AtPhase) -> Option<Self> {
         let phase = model.phase_axis()?;
         let own = model.axes.get(at.axis).filter(|_| at.axis != phase)?;
         let mut graph = Graph::default();
@@ -276,7 +276,7 @@ impl Quantity {
     }
 
     /// The axis and the phase, of an axis at a phase of the forcing.
-    pub fn phase(&self) -> Option<AtPhase> {
+    pub(crate) fn phase(&self) -> Option<AtPhase> {
         self.at_phase
     }
 
@@ -303,7 +303,7 @@ impl Quantity {
     }
 
     /// Whether it depends on each coordinate of the state.
-    pub fn states(&self) -> &[bool] {
+    pub(crate) fn states(&self) -> &[bool] {
         &self.states
     }
 
@@ -328,7 +328,7 @@ impl Quantity {
 
 impl BoundQuantity {
     /// Whether it depends on each coordinate of the state.
-    pub fn states(&self) -> &[bool] {
+    pub(crate) fn states(&self) -> &[bool] {
         &self.states
     }
 

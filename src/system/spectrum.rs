@@ -42,7 +42,7 @@ words! {
 
 impl Sides {
     /// By what the two-sided spectrum is multiplied.
-    pub fn factor(self) -> f64 {
+    pub(crate) fn factor(self) -> f64 {
         match self {
             Self::Two => 1.0,
             Self::One => 2.0,
@@ -103,7 +103,7 @@ impl SpectrumQuestion {
     }
 
     /// Distance between lags, and how many there are.
-    pub fn lags(&self) -> (f64, usize) {
+    pub(crate) fn lags(&self) -> (f64, usize) {
         let count = self.band.points;
         match self.lag {
             Some(lag) => (lag / count.saturating_sub(1).max(1) as f64, count),

@@ -77,7 +77,7 @@ impl Scope {
     }
 
     /// All names that were given.
-    pub fn symbols(&self) -> &Symbols {
+    pub(crate) fn symbols(&self) -> &Symbols {
         &self.symbols
     }
 

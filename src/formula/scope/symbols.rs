@@ -161,12 +161,12 @@ impl Symbols {
     }
 
     /// Names of the states, as given.
-    pub fn states(&self) -> &[String] {
+    pub(crate) fn states(&self) -> &[String] {
         &self.states
     }
 
     /// Names of the parameters, as given.
-    pub fn parameters(&self) -> &[String] {
+    pub(crate) fn parameters(&self) -> &[String] {
         &self.parameters
     }
 

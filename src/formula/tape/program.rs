@@ -82,13 +82,8 @@ impl Program {
         }
     }
 
-    /// Number of states.
-    pub fn states(&self) -> usize {
-        self.states
-    }
-
     /// Number of parameters.
-    pub fn parameters(&self) -> usize {
+    pub(crate) fn parameters(&self) -> usize {
         self.parameters
     }
 

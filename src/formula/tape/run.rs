@@ -43,11 +43,6 @@ thread_local! {
 }
 
 impl Tape {
-    /// Number of states.
-    pub fn states(&self) -> usize {
-        self.states
-    }
-
     /// Number of passes over the lanes.
     pub fn instructions(&self) -> usize {
         self.steps.len()

@@ -82,7 +82,7 @@ impl Shards {
     }
 
     /// Shards that are not complete, with what there is of them in words.
-    pub fn missing(&self) -> &[(Shard, String)] {
+    pub(crate) fn missing(&self) -> &[(Shard, String)] {
         &self.missing
     }
 

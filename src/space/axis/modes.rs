@@ -112,7 +112,7 @@ impl Axis {
     }
 
     /// The number of modes as it is given: of an axis that closes on itself that of its harmonics.
-    pub fn mode_number(&self) -> usize {
+    pub(crate) fn mode_number(&self) -> usize {
         match self.series {
             Some(Series::Fourier) => self.count() / 2,
             _ => self.count(),
@@ -128,7 +128,7 @@ impl Axis {
     }
 
     /// Whether it closes on itself: see [`Axis::fourier`] and [`Axis::turn`].
-    pub fn is_closed(&self) -> bool {
+    pub(crate) fn is_closed(&self) -> bool {
         self.closes
     }
 
@@ -144,7 +144,7 @@ impl Axis {
     }
 
     /// The series that it carries; `None` for cells.
-    pub fn series(&self) -> Option<Series> {
+    pub(crate) fn series(&self) -> Option<Series> {
         self.series
     }
 

@@ -9,7 +9,7 @@ impl Axis {
     ///
     /// # Errors
     /// [`SpaceError::Range`] or [`SpaceError::Count`].
-    pub fn turn(from: f64, to: f64, count: usize) -> Result<Self, SpaceError> {
+    pub(crate) fn turn(from: f64, to: f64, count: usize) -> Result<Self, SpaceError> {
         Ok(Self {
             closes: true,
             ..Self::uniform(from, to, count)?
@@ -18,7 +18,7 @@ impl Axis {
 
     /// The same place within the turn from the lower end, which belongs to it, to the upper one; on an axis that does
     /// not close on itself the place as it is.
-    pub fn wrapped(&self, x: f64) -> f64 {
+    pub(crate) fn wrapped(&self, x: f64) -> f64 {
         if !self.is_closed() || (self.from()..self.to()).contains(&x) {
             return x;
         }

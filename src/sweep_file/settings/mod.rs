@@ -170,7 +170,7 @@ impl Settings {
     }
 
     /// The sweep file as it was typed, word for word, with what was set on top of it.
-    pub fn typed(&self) -> SweepText {
+    pub(crate) fn typed(&self) -> SweepText {
         self.document.typed()
     }
 

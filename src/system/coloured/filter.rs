@@ -39,7 +39,7 @@ impl NoiseKind {
     }
 
     /// Parameters of the filter, one set for all noises of a model.
-    pub fn parameters(self) -> Vec<ParameterDescription> {
+    pub(crate) fn parameters(self) -> Vec<ParameterDescription> {
         let positive = |name: &str, symbol: &str, meaning: &str| {
             ParameterDescription::new(name, symbol, meaning).within(ParameterRange::Positive)
         };

@@ -343,7 +343,7 @@ impl TypedModel {
     }
 
     /// Axes that are angles, with their periods.
-    pub fn angles(&self) -> &[(String, f64)] {
+    pub(crate) fn angles(&self) -> &[(String, f64)] {
         &self.turns
     }
 }

@@ -67,7 +67,7 @@ pub struct IndicatorKind(pub(super) &'static Traits);
 
 impl IndicatorKind {
     /// Words that no other indicator has, for files that are read again.
-    pub fn code(self) -> &'static str {
+    pub(crate) fn code(self) -> &'static str {
         self.0.code
     }
 

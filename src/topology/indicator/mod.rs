@@ -83,7 +83,7 @@ pub struct Indicator {
 impl Indicator {
     /// The sign, if it is beyond doubt: the value exceeds the systematic error by more than sampling makes with
     /// the given probability (both signs together).
-    pub fn sign(&self, doubt: f64) -> Option<bool> {
+    pub(crate) fn sign(&self, doubt: f64) -> Option<bool> {
         let sampling = if self.sampling_error > 0.0 {
             self.sampling_error * two_sided_limit(doubt, self.degrees_of_freedom)
         } else {

@@ -17,7 +17,7 @@ const ERROR: f64 = 1e-8;
 impl IndicatorKind {
     /// The exponent of a density over one axis at an end of the range where the noise dies, with its sign turned:
     /// positive when the end is a peak, where the density grows beyond any bound.
-    pub const fn natural_end(is_upper: bool) -> Self {
+    pub(crate) const fn natural_end(is_upper: bool) -> Self {
         Self(&BOTH[is_upper as usize])
     }
 }

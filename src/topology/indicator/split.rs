@@ -33,7 +33,7 @@ impl IndicatorKind {
     /// Curvature of a joint density across a line on which it is its own mirror image, at a critical point on that
     /// line: positive when an extremum is there, a peak if `is_peak`, else a crater, and `is_it`; otherwise when a
     /// saddle is there, which becomes that extremum.
-    pub const fn split(is_peak: bool, is_it: bool) -> Self {
+    pub(crate) const fn split(is_peak: bool, is_it: bool) -> Self {
         Self(&ALL[is_peak as usize][is_it as usize])
     }
 }
