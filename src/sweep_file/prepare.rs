@@ -269,11 +269,10 @@ impl Settings {
             change_in_words("more", found.change)
         );
         if !found.is_enough {
-            note += match self.has_moving_bounds(&open) {
-                true => {
-                    ", which is much: bounds that move along the sweep suit no modes, give `count` for cells"
-                }
-                false => ", which is much: give `modes` for more, or `count` for cells",
+            note += if self.has_moving_bounds(&open) {
+                ", which is much: bounds that move along the sweep suit no modes, give `count` for cells"
+            } else {
+                ", which is much: give `modes` for more, or `count` for cells"
             };
             self.method.generator.change_by_modes = Some(found.change);
         }
@@ -348,12 +347,11 @@ impl Settings {
 
 /// What more modes change, infinite where no trial had a steady state.
 fn change_in_words(more: &str, change: f64) -> String {
-    match change.is_finite() {
-        true => {
-            format!("{more} change the watched densities by {change:.1e} of their largest value")
-        }
-        false => format!(
+    if change.is_finite() {
+        format!("{more} change the watched densities by {change:.1e} of their largest value")
+    } else {
+        format!(
             "what {more} change is not known, because trials on coarse grids have no steady state"
-        ),
+        )
     }
 }

@@ -160,12 +160,11 @@ impl Checks<'_> {
     fn point(&self, node: &WalkPoint, check: &Interpolated) -> CurvePoint {
         let reading = &node.reading;
         let (indicator, steepness) = (&reading.indicator, reading.steepness());
-        let sampling = match indicator.sampling_error > 0.0 {
-            true => {
-                let doubt = 1.0 - self.0.detector.confidence();
-                indicator.sampling_error * two_sided_limit(doubt, indicator.degrees_of_freedom)
-            }
-            false => 0.0,
+        let sampling = if indicator.sampling_error > 0.0 {
+            let doubt = 1.0 - self.0.detector.confidence();
+            indicator.sampling_error * two_sided_limit(doubt, indicator.degrees_of_freedom)
+        } else {
+            0.0
         };
         let own = indicator.systematic_error / steepness;
         let parts = ErrorParts {

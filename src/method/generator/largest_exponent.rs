@@ -289,13 +289,12 @@ impl Angles<'_> {
             weights.iter().zip(&values).map(|(w, &q)| w * of(q)).sum()
         };
         let mean = sum(&|q| q, &steady.mass);
-        let by_scheme = match is_judged {
-            true => {
-                let half = self.assemble(&space, decay, Dissipation::Half)?;
-                let change = solver.sensitivity_within(&half.matrix, &steady.mass, None, ROUGH)?;
-                sum(&|q| q - mean, &change)
-            }
-            false => 0.0,
+        let by_scheme = if is_judged {
+            let half = self.assemble(&space, decay, Dissipation::Half)?;
+            let change = solver.sensitivity_within(&half.matrix, &steady.mass, None, ROUGH)?;
+            sum(&|q| q - mean, &change)
+        } else {
+            0.0
         };
         Ok(Some(Stretching {
             mean,
