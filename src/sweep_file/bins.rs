@@ -58,10 +58,7 @@ impl Settings {
             ))
             .remedy("leave `from` and `to` out, and the program finds them");
         let entry = self.document.root.find(&["detect", "bins", name]);
-        Err(self.refuse(match entry {
-            Some(entry) => diagnostic.at(&entry.key_place, "these bins"),
-            None => diagnostic,
-        }))
+        Err(self.refuse(diagnostic.at(entry.map(|entry| &entry.key_place), "these bins")))
     }
 }
 
@@ -84,10 +81,7 @@ fn diagnostic(document: &Document, error: &BinsError) -> Diagnostic {
         BinsError::System(_) | BinsError::Cancelled(_) => return diagnostic,
     };
     let diagnostic = diagnostic.remedy(remedy);
-    match quantity_place(document, quantity) {
-        Some(place) => diagnostic.at(&place, "this quantity"),
-        None => diagnostic,
-    }
+    diagnostic.at(quantity_place(document, quantity).as_ref(), "this quantity")
 }
 
 /// Where a quantity was given.

@@ -112,10 +112,19 @@ impl Diagnostic {
         }
     }
 
-    /// Where it stands, with a few words beside the caret.
-    pub fn at(mut self, place: &Place, label: impl Into<String>) -> Self {
-        self.place = Some(place.clone());
-        self.label = label.into();
+    /// Where it stands, if that is known, with a few words beside the caret.
+    pub fn at<'p>(mut self, place: impl Into<Option<&'p Place>>, label: impl Into<String>) -> Self {
+        if let Some(place) = place.into() {
+            self.place = Some(place.clone());
+            self.label = label.into();
+        }
+        self
+    }
+
+    /// What is allowed there and what to do, as far as either is known.
+    pub(super) fn advice(mut self, allowed: Option<String>, remedy: Option<String>) -> Self {
+        self.allowed = allowed.or(self.allowed);
+        self.remedy = remedy.or(self.remedy);
         self
     }
 

@@ -103,6 +103,11 @@ impl<'d> Reader<'d> {
         self.entry(path).map(|entry| &entry.node.place)
     }
 
+    /// Where the name of a key stands.
+    pub(super) fn key_place(&self, path: &[&str]) -> Option<&'d Place> {
+        self.entry(path).map(|entry| &entry.key_place)
+    }
+
     /// The entries of a table.
     pub(super) fn entries(&self, path: &[&str]) -> &'d [Entry] {
         self.entry(path).map_or(&[], |entry| entry.node.entries())
@@ -181,11 +186,8 @@ fn unknown_key(entry: &Entry, path: &[&str]) -> Diagnostic {
     let elsewhere = KEYS
         .iter()
         .find(|key| key.parts().last() == Some(&entry.key));
-    let elsewhere = elsewhere.map(|key| key.path().to_owned());
-    match elsewhere {
-        Some(path) => diagnostic.remedy(format!("did you mean `{path}`?")),
-        None => diagnostic,
-    }
+    let remedy = elsewhere.map(|key| format!("did you mean `{}`?", key.path()));
+    diagnostic.advice(None, remedy)
 }
 
 /// The path of a table inside another that has a name.

@@ -86,10 +86,7 @@ impl Settings {
             .allowed("formulas that are finite for every state of the domain and every value of the sweep")
             .remedy("change the formula, or leave that state out by `from` and `to` in [cells]");
         let place = formula_place(&self.document, &self.draft().equations, &hazard.place);
-        match place {
-            Some(place) => diagnostic.at(&place, hazard.kind.words()),
-            None => diagnostic,
-        }
+        diagnostic.at(place.as_ref(), hazard.kind.words())
     }
 
     /// The contract of built-in models, at both ends of the sweep.

@@ -58,10 +58,10 @@ pub(super) fn read(
 
 /// A finding about the table `[cells]`.
 pub(in crate::sweep_file) fn at_cells(document: &Document, diagnostic: Diagnostic) -> Diagnostic {
-    match document.root.find(&["cells"]) {
-        Some(entry) => diagnostic.at(&entry.key_place, "these cells"),
-        None => diagnostic,
-    }
+    diagnostic.at(
+        document.root.find(&["cells"]).map(|entry| &entry.key_place),
+        "these cells",
+    )
 }
 
 fn read_axis(
@@ -237,10 +237,7 @@ fn build_axis(
     };
     let place = place.or_else(|| entry(&["count"]).map(|entry| &entry.node.place));
     let diagnostic = Diagnostic::new(format!("axis `{name}`: {error}"));
-    Err(Box::new(match place {
-        Some(place) => diagnostic.at(place, "refused"),
-        None => diagnostic,
-    }))
+    Err(Box::new(diagnostic.at(place, "refused")))
 }
 
 /// The cell space of axes of which nothing is left to the program.

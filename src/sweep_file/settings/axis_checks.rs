@@ -161,9 +161,6 @@ pub(super) fn check_modes(
         )
         .remedy(remedy);
     let place = reader.place(&["cells", name, "modes"]);
-    reader.report(match place.or_else(|| reader.place(&["cells", name])) {
-        Some(place) => diagnostic.at(place, "refused"),
-        None => diagnostic,
-    });
+    reader.report(diagnostic.at(place.or_else(|| reader.place(&["cells", name])), "refused"));
     None
 }

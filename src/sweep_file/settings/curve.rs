@@ -111,10 +111,7 @@ fn check_side(
         "the box of the curves goes from {from} to {to} along `{parameter}`"
     ))
     .allowed("a lower and a higher value");
-    reader.report(match reader.place(&["curve", key]) {
-        Some(place) => diagnostic.at(place, "no range"),
-        None => diagnostic,
-    });
+    reader.report(diagnostic.at(reader.place(&["curve", key]), "no range"));
     None
 }
 
@@ -148,9 +145,6 @@ fn check_held(
     let short = if is_first { from } else { to };
     let key = ends.iter().find(|(_, end)| *end == Some(short));
     let place = key.and_then(|(key, _)| reader.place(&["curve", key]));
-    reader.report(match place {
-        Some(place) => diagnostic.at(place, "the box ends here"),
-        None => diagnostic,
-    });
+    reader.report(diagnostic.at(place, "the box ends here"));
     None
 }

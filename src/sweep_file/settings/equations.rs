@@ -72,10 +72,7 @@ fn built_in_model(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>> 
     let refused = |error: ColouredNoiseError| {
         let diagnostic = Diagnostic::new(error.to_string());
         let place = reader.place(&["system", "noise", KIND]);
-        let diagnostic = match place {
-            Some(place) => diagnostic.at(place, "coloured noise"),
-            None => diagnostic,
-        };
+        let diagnostic = diagnostic.at(place, "coloured noise");
         reader.report(coloured_remedy(diagnostic, &error));
     };
     coloured.map_err(refused).ok()
@@ -293,23 +290,17 @@ fn check_use(reader: &mut Reader<'_>, draft: &Draft, model: &Model) {
             let title = format!("the swept parameter `{shown}` is in no equation, noise or bound");
             let diagnostic = Diagnostic::new(title).nearest(name, used.iter().copied());
             let place = reader.place(&["sweep", "parameter"]);
-            reader.report(match place {
-                Some(place) => diagnostic.at(place, "sweeping it changes nothing"),
-                None => diagnostic,
-            });
+            reader.report(diagnostic.at(place, "sweeping it changes nothing"));
         } else if let Some(entry) = reader.entry(&path) {
             let title = format!("parameter `{shown}` is in no equation, noise or bound");
             let near = nearest_name(name, used.iter().copied());
-            let advise = |diagnostic: Diagnostic| match near {
-                Some(near) => diagnostic.remedy(format!("did you mean `{near}`?")),
-                None => diagnostic,
-            };
+            let near = near.map(|near| format!("did you mean `{near}`?"));
             if entry.key_place.is_set() {
                 let diagnostic = Diagnostic::new(title).at(&entry.key_place, "set here");
-                reader.report(advise(diagnostic.allowed(list(&used))));
+                reader.report(diagnostic.advice(Some(list(&used)), near));
             } else {
                 let diagnostic = Diagnostic::warning(title).at(&entry.key_place, "not used");
-                reader.warn(advise(diagnostic));
+                reader.warn(diagnostic.advice(None, near));
             }
         }
     }
@@ -328,8 +319,5 @@ fn check_noise(reader: &mut Reader<'_>, model: &Model) {
     let diagnostic = Diagnostic::new("no equation has noise, so that there is no stationary density")
         .remedy("add a table [system.noise] with the amplitudes of white noises, such as `y = \"sqrt(2 D)\"`");
     let place = table_place(reader, "noise").or_else(|| table_place(reader, "equations"));
-    reader.report(match place {
-        Some(place) => diagnostic.at(&place, "no noise"),
-        None => diagnostic,
-    });
+    reader.report(diagnostic.at(place.as_ref(), "no noise"));
 }

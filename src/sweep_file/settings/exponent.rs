@@ -47,10 +47,7 @@ fn is_along_density(reader: &mut Reader<'_>, draft: &Draft, family: &Family) -> 
         (fault.to_string(), remedy)
     };
     let diagnostic = Diagnostic::new(words).remedy(remedy);
-    reader.report(match reader.place(&["exponent", "kind"]) {
-        Some(place) => diagnostic.at(place, "this exponent"),
-        None => diagnostic,
-    });
+    reader.report(diagnostic.at(reader.place(&["exponent", "kind"]), "this exponent"));
     false
 }
 
@@ -64,11 +61,8 @@ fn fixed_point(reader: &mut Reader<'_>, draft: &Draft, family: &Family) -> Optio
         let names: Vec<&str> = model.axes.iter().map(|axis| axis.name.as_str()).collect();
         let title = format!("`{}` is no coordinate of the state", quotable(wrong));
         let diagnostic = Diagnostic::new(title).nearest(wrong, names);
-        let entry = reader.entry(&["exponent", "at", wrong]);
-        reader.report(match entry {
-            Some(entry) => diagnostic.at(&entry.key_place, "no axis"),
-            None => diagnostic,
-        });
+        let place = reader.key_place(&["exponent", "at", wrong]);
+        reader.report(diagnostic.at(place, "no axis"));
         is_known = false;
     }
     if draft.exponent.is_none() {
@@ -157,8 +151,5 @@ fn refuse(reader: &mut Reader<'_>, title: String, remedy: &str) {
     let at = reader.place(&["exponent", "at"]);
     let place = at.or_else(|| reader.place(&["exponent", "kind"]));
     let place = place.or_else(|| reader.place(&["exponent"]));
-    reader.report(match place {
-        Some(place) => diagnostic.at(place, "this fixed point"),
-        None => diagnostic,
-    });
+    reader.report(diagnostic.at(place, "this fixed point"));
 }

@@ -92,9 +92,6 @@ pub(super) fn check_style(reader: &mut Reader<'_>, style: &FigureStyle) {
     let diagnostic = Diagnostic::new(title)
         .allowed(format!("with such text, from {least:.0} to {most:.0} mm"))
         .remedy("choose another `figures.style.width`, or another `figures.style.text`");
-    let diagnostic = match key("width").or_else(|| key("text")) {
-        Some(place) => diagnostic.at(place, "no room"),
-        None => diagnostic,
-    };
+    let diagnostic = diagnostic.at(key("width").or_else(|| key("text")), "no room");
     reader.report(diagnostic);
 }

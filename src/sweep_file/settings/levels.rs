@@ -38,11 +38,8 @@ pub(super) fn read(
         );
         let remedy = format!("take one of {}", known.join(", "));
         let diagnostic = Diagnostic::new(title).remedy(remedy);
-        let entry = reader.entry(&["levels", measure]);
-        reader.report(match entry {
-            Some(entry) => diagnostic.at(&entry.key_place, "this number"),
-            None => diagnostic,
-        });
+        let place = reader.key_place(&["levels", measure]);
+        reader.report(diagnostic.at(place, "this number"));
     }
     levels
 }

@@ -71,10 +71,7 @@ pub(super) fn read(
         let diagnostic =
             Diagnostic::new(format!("the map goes from {from} to {to} along `{name}`"))
                 .allowed("two different ends, in either order");
-        reader.report(match reader.place(&["map", "to"]) {
-            Some(place) => diagnostic.at(place, "no range"),
-            None => diagnostic,
-        });
+        reader.report(diagnostic.at(reader.place(&["map", "to"]), "no range"));
         return None;
     }
     let points = draft.map.points.or(points)?;
@@ -105,9 +102,6 @@ pub(super) fn is_second<'m>(
     let others = model.parameters.iter().map(|one| one.name.clone());
     let others: Vec<String> = others.filter(|one| one != name).collect();
     let diagnostic = Diagnostic::new(title).allowed(crate::sweep_file::names::list(&others));
-    reader.report(match place {
-        Some(place) => diagnostic.at(place, "the same as `sweep.parameter`"),
-        None => diagnostic,
-    });
+    reader.report(diagnostic.at(place, "the same as `sweep.parameter`"));
     None
 }

@@ -55,8 +55,5 @@ fn check_sgcm(reader: &mut Reader<'_>, options: &SgcmOptions) {
 /// Reports at the first of two keys of `[method]` that is given.
 fn report_at(reader: &mut Reader<'_>, diagnostic: Diagnostic, keys: [&str; 2]) {
     let place = keys.iter().find_map(|key| reader.place(&["method", key]));
-    reader.report(match place {
-        Some(place) => diagnostic.at(place, "given here"),
-        None => diagnostic,
-    });
+    reader.report(diagnostic.at(place, "given here"));
 }

@@ -108,11 +108,8 @@ fn check_method(reader: &mut Reader<'_>, draft: &Draft) {
         "times of first passage are worked out by `generator` and `monte-carlo`, not by `sgcm`";
     let remedy = "set `method.kind = \"generator\"`, or `\"monte-carlo\"`";
     let diagnostic = Diagnostic::new(title).remedy(remedy);
-    let entry = reader.entry(&["passage", &first.name]);
-    reader.report(match entry {
-        Some(entry) => diagnostic.at(&entry.key_place, "this passage"),
-        None => diagnostic,
-    });
+    let place = reader.key_place(&["passage", &first.name]);
+    reader.report(diagnostic.at(place, "this passage"));
 }
 
 /// Where a passage starts, regions by their numbers among those that are given.
@@ -241,12 +238,9 @@ fn state(reader: &mut Reader<'_>, passage: &PassageDraft, model: &Model) -> Opti
     if let Some((wrong, _)) = passage.start.iter().find(|(name, _)| !is_axis(name)) {
         let title = format!("`{wrong}` is no coordinate of the state");
         let names: Vec<&str> = model.axes.iter().map(|axis| axis.name.as_str()).collect();
-        let entry = reader.entry(&["passage", &passage.name, "start", wrong]);
+        let place = reader.key_place(&["passage", &passage.name, "start", wrong]);
         let diagnostic = Diagnostic::new(title).nearest(wrong, names);
-        reader.report(match entry {
-            Some(entry) => diagnostic.at(&entry.key_place, "no axis"),
-            None => diagnostic,
-        });
+        reader.report(diagnostic.at(place, "no axis"));
         return None;
     }
     let state = model
@@ -270,11 +264,8 @@ fn state(reader: &mut Reader<'_>, passage: &PassageDraft, model: &Model) -> Opti
 
 fn refuse(reader: &mut Reader<'_>, passage: &str, title: String, remedy: &str) {
     let diagnostic = Diagnostic::new(title).remedy(remedy);
-    let entry = reader.entry(&["passage", passage]);
-    reader.report(match entry {
-        Some(entry) => diagnostic.at(&entry.key_place, "this passage"),
-        None => diagnostic,
-    });
+    let place = reader.key_place(&["passage", passage]);
+    reader.report(diagnostic.at(place, "this passage"));
 }
 
 fn diagnostic(reader: &Reader<'_>, one: &Given, error: &RegionError) -> Diagnostic {
@@ -286,12 +277,5 @@ fn diagnostic(reader: &Reader<'_>, one: &Given, error: &RegionError) -> Diagnost
         }
         None => diagnostic.at(&one.place, "this region"),
     };
-    let diagnostic = match error.fault.allowed() {
-        Some(allowed) => diagnostic.allowed(allowed),
-        None => diagnostic,
-    };
-    match error.fault.remedy() {
-        Some(remedy) => diagnostic.remedy(remedy),
-        None => diagnostic,
-    }
+    diagnostic.advice(error.fault.allowed(), error.fault.remedy())
 }

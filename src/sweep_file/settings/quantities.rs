@@ -105,14 +105,7 @@ fn diagnostic(reader: &Reader<'_>, one: &Given, error: &QuantityError) -> Diagno
         }
         None => diagnostic.at(&one.name_place, "this quantity"),
     };
-    let diagnostic = match error.fault.allowed() {
-        Some(allowed) => diagnostic.allowed(allowed),
-        None => diagnostic,
-    };
-    match error.fault.remedy() {
-        Some(remedy) => diagnostic.remedy(remedy),
-        None => diagnostic,
-    }
+    diagnostic.advice(error.fault.allowed(), error.fault.remedy())
 }
 
 /// Checks `[detect.bins]`.

@@ -15,11 +15,8 @@ pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft) -> usize {
         let title = format!("slow modes are worked out by `generator`, not by `{name}`");
         let remedy = "set `method.kind = \"generator\"`, or leave `[relaxation]` out";
         let diagnostic = Diagnostic::new(title).remedy(remedy);
-        let entry = reader.entry(&["relaxation", "modes"]);
-        reader.report(match entry {
-            Some(entry) => diagnostic.at(&entry.key_place, "this number"),
-            None => diagnostic,
-        });
+        let place = reader.key_place(&["relaxation", "modes"]);
+        reader.report(diagnostic.at(place, "this number"));
     }
     wanted
 }

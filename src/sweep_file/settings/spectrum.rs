@@ -140,10 +140,7 @@ fn number_of(
 fn refuse(reader: &mut Reader<'_>, key: &[&str], diagnostic: Diagnostic) {
     let path = [&["spectrum"], key].concat();
     let place = reader.place(&path).or_else(|| reader.place(&["spectrum"]));
-    reader.report(match place {
-        Some(place) => diagnostic.at(place, "here"),
-        None => diagnostic,
-    });
+    reader.report(diagnostic.at(place, "here"));
 }
 
 /// What a complete file says.

@@ -68,10 +68,7 @@ pub(super) fn known_parameter<'m>(
         );
         let names = parameters.iter().map(|parameter| parameter.name.as_str());
         let diagnostic = Diagnostic::new(title).nearest(name, names);
-        reader.report(match place {
-            Some(place) => diagnostic.at(place, "unknown parameter"),
-            None => diagnostic,
-        });
+        reader.report(diagnostic.at(place, "unknown parameter"));
     }
     known
 }
@@ -215,10 +212,7 @@ fn check_values(reader: &mut Reader<'_>, from: f64, to: f64, points: usize) -> b
     };
     let diagnostic = Diagnostic::new(title)
         .allowed("two different ends, in either order, far enough apart for the points");
-    reader.report(match reader.place(&["sweep", "to"]) {
-        Some(place) => diagnostic.at(place, label),
-        None => diagnostic,
-    });
+    reader.report(diagnostic.at(reader.place(&["sweep", "to"]), label));
     false
 }
 

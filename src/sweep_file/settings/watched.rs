@@ -157,10 +157,7 @@ fn refuse_modes(
         false => format!("give `cells.{name}.count` in place of modes, or leave the formula out"),
     };
     let diagnostic = Diagnostic::new(title).remedy(remedy);
-    reader.report(match at {
-        Some(at) => diagnostic.at(at, "carried by modes"),
-        None => diagnostic,
-    });
+    reader.report(diagnostic.at(at, "carried by modes"));
 }
 
 /// The number of an axis, or of a quantity, numbered on from the axes.

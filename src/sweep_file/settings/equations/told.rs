@@ -31,10 +31,10 @@ pub(super) fn diagnostic(
     let words = error.to_string();
     let plain = |label: &str, place: Option<Place>| {
         let diagnostic = Diagnostic::new(words.clone());
-        match place.or_else(|| table_place(reader, "equations")) {
-            Some(place) => diagnostic.at(&place, label),
-            None => diagnostic,
-        }
+        diagnostic.at(
+            place.or_else(|| table_place(reader, "equations")).as_ref(),
+            label,
+        )
     };
     match &error {
         TypedModelError::Formula {
@@ -47,13 +47,8 @@ pub(super) fn diagnostic(
                 let part = inside(&reader.document().sources, &value, &fault.span);
                 diagnostic = diagnostic.at(&part, "here");
             }
-            if let Some(allowed) = fault.allowed() {
-                diagnostic = diagnostic.allowed(allowed);
-            }
-            match fault.remedy().or_else(|| defined(fault.unknown_symbol()?)) {
-                Some(remedy) => diagnostic.remedy(remedy),
-                None => diagnostic,
-            }
+            let remedy = fault.remedy().or_else(|| defined(fault.unknown_symbol()?));
+            diagnostic.advice(fault.allowed(), remedy)
         }
         TypedModelError::Circle { place, span, .. } => {
             let value = value(place);
@@ -77,10 +72,7 @@ pub(super) fn diagnostic(
             let diagnostic = Diagnostic::new(title)
                 .remedy(remedy)
                 .nearest(axis, known.iter().map(String::as_str));
-            match key {
-                Some(key) => diagnostic.at(&key, "unknown axis"),
-                None => diagnostic,
-            }
+            diagnostic.at(key.as_ref(), "unknown axis")
         }
         TypedModelError::Name(error) => {
             let diagnostic = plain("this name", name_place(reader, error));
