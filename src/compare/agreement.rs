@@ -79,21 +79,19 @@ pub(super) fn of_marginals(solved: &[Solved]) -> Vec<Agreement> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::density::{Density, Structure, Variants};
+    use crate::density::Density;
     use crate::space::Axis;
 
     fn density(values: [f64; 4], errors: [f64; 4]) -> EstimatedDensity {
         EstimatedDensity {
-            observable: Observable::Marginal(0),
-            density: Density {
-                axes: vec![Axis::uniform(0.0, 4.0, 4).unwrap()],
-                values: values.to_vec(),
-            },
             standard_error: errors.to_vec(),
-            variants: Variants::None,
-            structure: Structure::default(),
-            negligible: crate::density::NEGLIGIBLE,
-            truncation: Default::default(),
+            ..EstimatedDensity::new(
+                Observable::Marginal(0),
+                Density {
+                    axes: vec![Axis::uniform(0.0, 4.0, 4).unwrap()],
+                    values: values.to_vec(),
+                },
+            )
         }
     }
 

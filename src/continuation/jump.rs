@@ -59,7 +59,7 @@ fn slope(points: &[&Point], a: (usize, &Indicator), b: (usize, &Indicator)) -> f
 mod tests {
     use super::*;
     use crate::continuation::SolveReport;
-    use crate::density::{Density, EstimatedDensity, Observable, Structure, Variants};
+    use crate::density::{Density, EstimatedDensity, Observable};
     use crate::space::Axis;
     use crate::topology::{Detection, IndicatorKind};
 
@@ -98,16 +98,14 @@ mod tests {
 
     fn point(value: f64, of: f64, negligible: f64) -> Point {
         let density = EstimatedDensity {
-            observable: Observable::Marginal(0),
-            density: Density {
-                axes: vec![Axis::uniform(-1.0, 1.0, 2).unwrap()],
-                values: vec![of; 2],
-            },
-            standard_error: vec![0.0; 2],
-            variants: Variants::None,
-            structure: Structure::default(),
             negligible,
-            truncation: Default::default(),
+            ..EstimatedDensity::new(
+                Observable::Marginal(0),
+                Density {
+                    axes: vec![Axis::uniform(-1.0, 1.0, 2).unwrap()],
+                    values: vec![of; 2],
+                },
+            )
         };
         Point {
             value,

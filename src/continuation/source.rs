@@ -192,7 +192,7 @@ impl From<Cancelled> for SourceError {
 /// ```
 /// use pbif::cancellation::Cancellation;
 /// use pbif::continuation::{CellCheck, DensitySource, Session, Solution, SolveReport, Subject};
-/// use pbif::density::{Density, EstimatedDensity, Observable, Structure, Variants};
+/// use pbif::density::{Density, EstimatedDensity, Observable, Structure};
 /// use pbif::space::Axis;
 /// use pbif::system::{Family, Path, registry};
 ///
@@ -205,14 +205,11 @@ impl From<Cancelled> for SourceError {
 ///     let value = |x: f64| (4.0 * (0.5 * a * x * x - 0.25 * x.powi(4))).exp();
 ///     let values: Vec<f64> = axis.centres().into_iter().map(value).collect();
 ///     let mass: f64 = values.iter().map(|value| value * axis.width(0)).sum();
+///     let density = Density { axes: vec![axis], values: values.iter().map(|p| p / mass).collect() };
 ///     EstimatedDensity {
-///         observable: Observable::Marginal(0),
-///         standard_error: vec![0.0; values.len()],
-///         density: Density { axes: vec![axis], values: values.iter().map(|p| p / mass).collect() },
-///         variants: Variants::None,
 ///         structure: Structure { centre: Some(vec![0.0]), ..Structure::default() },
 ///         negligible: 0.0,
-///         truncation: Default::default(),
+///         ..EstimatedDensity::new(Observable::Marginal(0), density)
 ///     }
 /// }
 ///

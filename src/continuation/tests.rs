@@ -43,18 +43,13 @@ impl Ramp {
             solution.report.status = PointStatus::NoSteadyState;
             return solution;
         }
-        solution.densities = vec![EstimatedDensity {
-            observable: Observable::Marginal(0),
-            density: Density {
+        solution.densities = vec![EstimatedDensity::new(
+            Observable::Marginal(0),
+            Density {
                 axes: vec![Axis::uniform(-1.0, 1.0, 2).unwrap()],
                 values: vec![0.5 + 0.1 * value, 0.5 - 0.1 * value],
             },
-            standard_error: vec![0.0; 2],
-            variants: crate::density::Variants::None,
-            structure: crate::density::Structure::default(),
-            negligible: crate::density::NEGLIGIBLE,
-            truncation: Default::default(),
-        }];
+        )];
         solution
     }
 }

@@ -1,6 +1,6 @@
 //! Densities whose error is that of a grid, not of sampling: the difference between two discretisations.
 
-use super::{Density, DensityError, EstimatedDensity, Observable, Projection, Structure, Variants};
+use super::{Density, DensityError, EstimatedDensity, Observable, Projection, Variants};
 use crate::space::CellSpace;
 
 /// Height of a wiggle from trough to crest, over the depth of its troughs below zero: what is below zero is the lower
@@ -34,13 +34,9 @@ pub(crate) fn estimate_from_second(
     second: Vec<f64>,
 ) -> EstimatedDensity {
     EstimatedDensity {
-        observable,
         standard_error: errors_by_schemes(&density, &second),
-        density,
         variants: Variants::Scheme(second),
-        structure: Structure::default(),
-        negligible: crate::density::NEGLIGIBLE,
-        truncation: Default::default(),
+        ..EstimatedDensity::new(observable, density)
     }
 }
 

@@ -161,6 +161,20 @@ pub struct Truncation {
 }
 
 impl EstimatedDensity {
+    /// A density without errors, other estimates of it and a structure; values below [`NEGLIGIBLE`] are what a solver
+    /// leaves.
+    pub fn new(observable: Observable, density: Density) -> Self {
+        Self {
+            observable,
+            standard_error: vec![0.0; density.values.len()],
+            density,
+            variants: Variants::None,
+            structure: Structure::default(),
+            negligible: NEGLIGIBLE,
+            truncation: Truncation::default(),
+        }
+    }
+
     /// Whether there is one value a cell of every estimate: what was read from a file may not have it.
     pub(crate) fn is_sound(&self) -> bool {
         let axes = &self.density.axes;

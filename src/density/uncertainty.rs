@@ -7,7 +7,7 @@
 //! a cell of volume V. Hence 1/n = Σ var / Σ (p/V) over a window; the ratio of sums, unlike a mean of
 //! ratios, is ruled by the cells that hold the mass, and errs to the large side beside them.
 
-use super::{Density, DensityError, EstimatedDensity, Observable, Projection, Structure, Variants};
+use super::{Density, DensityError, EstimatedDensity, Observable, Projection, Variants};
 use crate::space::CellSpace;
 
 /// Cells on either side of a cell whose variances are pooled with its own.
@@ -63,13 +63,9 @@ pub(crate) fn estimate_projected(
         }
     };
     Ok(EstimatedDensity {
-        observable,
-        density,
         standard_error,
         variants,
-        structure: Structure::default(),
-        negligible: crate::density::NEGLIGIBLE,
-        truncation: Default::default(),
+        ..EstimatedDensity::new(observable, density)
     })
 }
 

@@ -9,7 +9,7 @@ use crate::continuation::measure::{DEVIATION, MEAN};
 use crate::continuation::{
     DensitySource, Session, Solution, SolveReport, SourceError, Subject, SweepResult,
 };
-use crate::density::{Density, EstimatedDensity, NEGLIGIBLE, Structure, Variants, moments};
+use crate::density::{Density, EstimatedDensity, moments};
 use crate::method::Problem;
 use crate::run::StoredRun;
 use crate::sweep_file::SweepFile;
@@ -58,18 +58,13 @@ impl Session for Exact {
         }
         Ok(Solution {
             report,
-            densities: vec![EstimatedDensity {
-                observable: self.problem.observables()[0],
-                standard_error: vec![0.0; values.len()],
-                density: Density {
+            densities: vec![EstimatedDensity::new(
+                self.problem.observables()[0],
+                Density {
                     axes: vec![axis.clone()],
                     values,
                 },
-                variants: Variants::None,
-                structure: Structure::default(),
-                negligible: NEGLIGIBLE,
-                truncation: Default::default(),
-            }],
+            )],
             sensitivity: None,
         })
     }

@@ -45,16 +45,14 @@ fn point(value: f64, solved: bool) -> Point {
     let x = Axis::uniform(-1.0, 1.0, 2).unwrap();
     let y = Axis::uniform(0.0, 3.0, 3).unwrap();
     let estimate = |observable, axes: Vec<Axis>, cells: usize| EstimatedDensity {
-        observable,
-        density: Density {
-            axes,
-            values: (0..cells).map(|cell| value + cell as f64).collect(),
-        },
         standard_error: vec![0.5; cells],
-        variants: crate::density::Variants::None,
-        structure: crate::density::Structure::default(),
-        negligible: crate::density::NEGLIGIBLE,
-        truncation: Default::default(),
+        ..EstimatedDensity::new(
+            observable,
+            Density {
+                axes,
+                values: (0..cells).map(|cell| value + cell as f64).collect(),
+            },
+        )
     };
     let detection = Detection {
         indicators: Vec::new(),

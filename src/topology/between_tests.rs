@@ -1,7 +1,7 @@
 //! What is drawn between the cells: its averages, its order, its kinks, and that it has no peak of its own.
 
 use super::*;
-use crate::density::{Density, Kink, Observable, Structure, Variants};
+use crate::density::{Density, Kink, Observable, Structure};
 use crate::space::Grading;
 
 /// A density with these axes and averages, and kinks on faces of its first axis.
@@ -12,16 +12,11 @@ fn estimated(axes: Vec<Axis>, values: Vec<f64>, kinks: &[f64]) -> EstimatedDensi
         jump: vec![-1.0],
     };
     EstimatedDensity {
-        observable: Observable::Marginal(0),
-        standard_error: vec![0.0; values.len()],
-        variants: Variants::None,
         structure: Structure {
             kinks: kinks.iter().map(kink).collect(),
             ..Structure::default()
         },
-        negligible: crate::density::NEGLIGIBLE,
-        truncation: Default::default(),
-        density: Density { axes, values },
+        ..EstimatedDensity::new(Observable::Marginal(0), Density { axes, values })
     }
 }
 

@@ -168,16 +168,14 @@ mod tests {
     fn estimated(values: Vec<f64>, errors: Vec<f64>) -> EstimatedDensity {
         let axis = Axis::uniform(0.0, 1.0, 8).unwrap();
         EstimatedDensity {
-            observable: Observable::Marginal(0),
-            density: Density {
-                axes: vec![axis],
-                values,
-            },
             standard_error: errors,
-            variants: crate::density::Variants::None,
-            structure: crate::density::Structure::default(),
-            negligible: crate::density::NEGLIGIBLE,
-            truncation: Default::default(),
+            ..EstimatedDensity::new(
+                Observable::Marginal(0),
+                Density {
+                    axes: vec![axis],
+                    values,
+                },
+            )
         }
     }
 
@@ -226,16 +224,14 @@ mod tests {
         let axis = Axis::uniform(0.0, 1.0, 40).unwrap();
         let values = (0..40).map(|i| 10.0 + f64::from(i % 2) * f64::from(i) * 0.01);
         let density = EstimatedDensity {
-            observable: Observable::Marginal(0),
-            density: Density {
-                axes: vec![axis],
-                values: values.collect(),
-            },
             standard_error: vec![1.0; 40],
-            variants: crate::density::Variants::None,
-            structure: crate::density::Structure::default(),
-            negligible: crate::density::NEGLIGIBLE,
-            truncation: Default::default(),
+            ..EstimatedDensity::new(
+                Observable::Marginal(0),
+                Density {
+                    axes: vec![axis],
+                    values: values.collect(),
+                },
+            )
         };
         let detection = detector().detect(&density);
         let peaks = |verdict| {

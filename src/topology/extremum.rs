@@ -212,7 +212,7 @@ fn beside(axis: &Axis, values: &[f64], kinks: &[Break], kink: &Break) -> Option<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::density::{Density, Kink, Observable, Structure, Variants};
+    use crate::density::{Density, Kink, Observable, Variants};
     use crate::space::Grading;
 
     /// A marginal given by its primitive, so that values are exact averages.
@@ -221,18 +221,13 @@ mod tests {
         let values: Vec<f64> = edges
             .map(|edge| (primitive(edge[1]) - primitive(edge[0])) / (edge[1] - edge[0]))
             .collect();
-        EstimatedDensity {
-            observable: Observable::Marginal(0),
-            standard_error: vec![0.0; values.len()],
-            variants: Variants::None,
-            structure: Structure::default(),
-            negligible: crate::density::NEGLIGIBLE,
-            truncation: Default::default(),
-            density: Density {
+        EstimatedDensity::new(
+            Observable::Marginal(0),
+            Density {
                 axes: vec![axis.clone()],
                 values,
             },
-        }
+        )
     }
 
     /// The peak about the cell that holds `near`.

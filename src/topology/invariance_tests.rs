@@ -15,16 +15,14 @@ fn rough(noise: &[f64]) -> EstimatedDensity {
         2.0 * (-(y.abs() - 1.2).powi(2) - x * x).exp() + noise[cell]
     };
     EstimatedDensity {
-        observable: Observable::Joint(0, 1),
         standard_error: (0..99).map(|cell| 0.05 + 0.02 * noise[cell]).collect(),
-        variants: crate::density::Variants::None,
-        structure: crate::density::Structure::default(),
-        negligible: crate::density::NEGLIGIBLE,
-        truncation: Default::default(),
-        density: Density {
-            values: (0..99).map(value).collect(),
-            axes: vec![x, y],
-        },
+        ..EstimatedDensity::new(
+            Observable::Joint(0, 1),
+            Density {
+                values: (0..99).map(value).collect(),
+                axes: vec![x, y],
+            },
+        )
     }
 }
 
@@ -36,16 +34,14 @@ fn rearranged(
 ) -> EstimatedDensity {
     let take = |values: &[f64]| (0..values.len()).map(|cell| values[source(cell)]).collect();
     EstimatedDensity {
-        observable: of.observable,
         standard_error: take(&of.standard_error),
-        variants: crate::density::Variants::None,
-        structure: crate::density::Structure::default(),
-        negligible: crate::density::NEGLIGIBLE,
-        truncation: Default::default(),
-        density: Density {
-            axes,
-            values: take(&of.density.values),
-        },
+        ..EstimatedDensity::new(
+            of.observable,
+            Density {
+                axes,
+                values: take(&of.density.values),
+            },
+        )
     }
 }
 

@@ -156,15 +156,7 @@ mod tests {
     }
 
     fn exact(axes: Vec<Axis>, values: Vec<f64>) -> EstimatedDensity {
-        EstimatedDensity {
-            observable: Observable::Marginal(0),
-            standard_error: vec![0.0; values.len()],
-            variants: crate::density::Variants::None,
-            structure: crate::density::Structure::default(),
-            negligible: crate::density::NEGLIGIBLE,
-            truncation: Default::default(),
-            density: Density { axes, values },
-        }
+        EstimatedDensity::new(Observable::Marginal(0), Density { axes, values })
     }
 
     fn graded(count: usize) -> Axis {

@@ -5,7 +5,7 @@ mod stages;
 
 use super::*;
 use crate::cancellation::Cancellation;
-use crate::density::{Density, EstimatedDensity, Kink, Observable, Structure, Variants};
+use crate::density::{Density, EstimatedDensity, Kink, Observable, Structure};
 use crate::space::Axis;
 use crate::system::test_families::bistable;
 use crate::topology::{DetectOptions, PersistenceDetector};
@@ -87,13 +87,8 @@ impl<F: Formula> Exact<F> {
             .for_each(|p| *p *= self.scale / total);
         let mut solution = Solution::without_density(SolveReport::solved("exact"));
         solution.densities = vec![EstimatedDensity {
-            observable: self.subject.observables[0],
-            standard_error: vec![0.0; density.values.len()],
-            density,
-            variants: Variants::None,
             structure: (self.structure)(value),
-            negligible: crate::density::NEGLIGIBLE,
-            truncation: Default::default(),
+            ..EstimatedDensity::new(self.subject.observables[0], density)
         }];
         solution
     }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::continuation::measure::{DEVIATION, MEAN};
 use crate::continuation::{CellCheck, Measure, SolveReport, Subject};
-use crate::density::{Density, NEGLIGIBLE, Observable, Structure};
+use crate::density::{Density, Observable};
 use crate::space::Axis;
 use crate::system::test_families::coulomb;
 
@@ -31,13 +31,9 @@ fn point(value: f64, solved: bool) -> Point {
         let cells: usize = axes.iter().map(Axis::count).product();
         let values: Vec<f64> = (0..cells).map(|cell| value + cell as f64).collect();
         EstimatedDensity {
-            observable,
             standard_error: vec![0.25; cells],
             variants: Variants::Scheme(values.iter().map(|value| -value).collect()),
-            density: Density { axes, values },
-            structure: Structure::default(),
-            negligible: NEGLIGIBLE,
-            truncation: Default::default(),
+            ..EstimatedDensity::new(observable, Density { axes, values })
         }
     };
     let densities = subject().observables.into_iter().map(density);

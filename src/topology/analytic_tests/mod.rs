@@ -54,15 +54,7 @@ fn exact(axes: Vec<Axis>, values: Vec<f64>) -> EstimatedDensity {
     let mut density = Density { axes, values };
     let total: f64 = density.masses().iter().sum();
     density.values.iter_mut().for_each(|value| *value /= total);
-    EstimatedDensity {
-        observable,
-        standard_error: vec![0.0; density.values.len()],
-        variants: Variants::None,
-        structure: crate::density::Structure::default(),
-        negligible: crate::density::NEGLIGIBLE,
-        truncation: Default::default(),
-        density,
-    }
+    EstimatedDensity::new(observable, density)
 }
 
 pub(super) fn detect(estimated: &EstimatedDensity) -> Detection {

@@ -136,7 +136,7 @@ fn tops(estimated: &EstimatedDensity, field: &Field<'_>, along: usize, line: usi
 #[cfg(test)]
 mod tests {
     use super::flanks_of_crests;
-    use crate::density::{Density, EstimatedDensity, Observable, Structure, Variants};
+    use crate::density::{Density, EstimatedDensity, Observable};
     use crate::space::Axis;
 
     /// log p = 2 (θ x - cosh x + c x²/2) - (y - x/2)²: along the crest y = x/2 the slope is 2 (θ - sinh x + c x), with
@@ -157,16 +157,14 @@ mod tests {
                 .flat_map(|x| centres.iter().map(move |y| log(*x, *y).exp()))
                 .collect();
             let estimated = EstimatedDensity {
-                observable: Observable::Joint(0, 1),
-                standard_error: vec![0.0; values.len()],
-                density: Density {
-                    axes: vec![axis.clone(), axis],
-                    values,
-                },
-                variants: Variants::None,
-                structure: Structure::default(),
                 negligible: 1e-7,
-                truncation: Default::default(),
+                ..EstimatedDensity::new(
+                    Observable::Joint(0, 1),
+                    Density {
+                        axes: vec![axis.clone(), axis],
+                        values,
+                    },
+                )
             };
             flanks_of_crests(&estimated)
         };

@@ -53,7 +53,7 @@ pub(crate) fn flanks_from_centre(estimated: &EstimatedDensity) -> Vec<Flank> {
 #[cfg(test)]
 mod tests {
     use super::flanks_from_centre;
-    use crate::density::{Density, EstimatedDensity, Observable, Structure, Variants};
+    use crate::density::{Density, EstimatedDensity, Observable, Structure};
     use crate::space::Axis;
 
     /// log p = ∫ -(q - 1) ((q - 2)² - ε)/2 dq with q = r²: two rings with a moat between them for ε above zero, and one
@@ -73,19 +73,18 @@ mod tests {
                 .map(|q| log(q).exp())
                 .collect();
             let estimated = EstimatedDensity {
-                observable: Observable::Joint(0, 1),
-                standard_error: vec![0.0; values.len()],
-                density: Density {
-                    axes: vec![axis.clone(), axis],
-                    values,
-                },
-                variants: Variants::None,
                 structure: Structure {
                     centre: Some(vec![0.0; 2]),
                     ..Structure::default()
                 },
                 negligible: 0.0,
-                truncation: Default::default(),
+                ..EstimatedDensity::new(
+                    Observable::Joint(0, 1),
+                    Density {
+                        axes: vec![axis.clone(), axis],
+                        values,
+                    },
+                )
             };
             flanks_from_centre(&estimated)
         };
