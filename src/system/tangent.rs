@@ -211,32 +211,41 @@ impl Tangent {
 
     /// How fast deviations in the direction of the last axis of a batch stretch, in 1/t.
     pub(crate) fn stretching(&self, states: &[Lanes]) -> Lanes {
-        let (batch, mut out) = (self.slopes.run(states), [0.0; LANES]);
-        for (lane, out) in out.iter_mut().enumerate() {
-            let (sine, cosine) = states[2][lane].sin_cos();
-            let [xx, xy, yx, yy] = [0, 1, 2, 3].map(|entry| batch.a[entry][lane]);
-            *out = xx * cosine * cosine + (xy + yx) * sine * cosine + yy * sine * sine;
-            for &(number, _) in &self.shared {
-                let [pull, along, across] = self.slopes.pull(&batch, number, lane, (sine, cosine));
-                *out += 0.5 * (across * across - along * along) * pull * pull;
-            }
-        }
-        out
+        let by_drift = |[xx, xy, yx, yy]: [f64; 4], (sine, cosine): (f64, f64)| {
+            xx * cosine * cosine + (xy + yx) * sine * cosine + yy * sine * sine
+        };
+        let by_noise =
+            |[pull, along, across]: [f64; 3]| 0.5 * (across * across - along * along) * pull * pull;
+        self.rates(states, by_drift, by_noise)
     }
 
     /// How fast deviations in the direction of the last axis of a batch turn, in 1/t.
     pub(crate) fn turning(&self, states: &[Lanes]) -> Lanes {
-        let (batch, mut out) = (self.slopes.run(states), [0.0; LANES]);
-        for (lane, out) in out.iter_mut().enumerate() {
-            let (sine, cosine) = states[2][lane].sin_cos();
-            let [xx, xy, yx, yy] = [0, 1, 2, 3].map(|entry| batch.a[entry][lane]);
-            *out = yx * cosine * cosine - xy * sine * sine + (yy - xx) * sine * cosine;
-            for &(number, _) in &self.shared {
-                let [pull, along, across] = self.slopes.pull(&batch, number, lane, (sine, cosine));
-                *out -= along * across * pull * pull;
-            }
-        }
-        out
+        let by_drift = |[xx, xy, yx, yy]: [f64; 4], (sine, cosine): (f64, f64)| {
+            yx * cosine * cosine - xy * sine * sine + (yy - xx) * sine * cosine
+        };
+        let by_noise = |[pull, along, across]: [f64; 3]| -(along * across * pull * pull);
+        self.rates(states, by_drift, by_noise)
+    }
+
+    /// A rate of deviations in the direction of the last axis of a batch: what the derivatives of the drift make of it,
+    /// by rows, with the sine and cosine of the angle, and what each noise adds, as [`Slopes::pull`] gives it.
+    fn rates(
+        &self,
+        states: &[Lanes],
+        by_drift: impl Fn([f64; 4], (f64, f64)) -> f64,
+        by_noise: impl Fn([f64; 3]) -> f64,
+    ) -> Lanes {
+        let batch = self.slopes.run(states);
+        std::array::from_fn(|lane| {
+            let angle = states[2][lane].sin_cos();
+            let slopes = [0, 1, 2, 3].map(|entry| batch.a[entry][lane]);
+            let noises = self.shared.iter();
+            let pulls = noises.map(|&(number, _)| self.slopes.pull(&batch, number, lane, angle));
+            pulls
+                .map(&by_noise)
+                .fold(by_drift(slopes, angle), |rate, part| rate + part)
+        })
     }
 
     /// The noises that move a state and the angle at once: the axis, and the product of both amplitudes.

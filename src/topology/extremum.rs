@@ -214,21 +214,7 @@ mod tests {
     use super::*;
     use crate::density::{Density, Kink, Observable, Variants};
     use crate::space::Grading;
-
-    /// A marginal given by its primitive, so that values are exact averages.
-    fn averages(axis: &Axis, primitive: impl Fn(f64) -> f64) -> EstimatedDensity {
-        let edges = axis.edges().windows(2);
-        let values: Vec<f64> = edges
-            .map(|edge| (primitive(edge[1]) - primitive(edge[0])) / (edge[1] - edge[0]))
-            .collect();
-        EstimatedDensity::new(
-            Observable::Marginal(0),
-            Density {
-                axes: vec![axis.clone()],
-                values,
-            },
-        )
-    }
+    use crate::topology::analytic_tests::averages;
 
     /// The peak about the cell that holds `near`.
     fn peak(estimated: &EstimatedDensity, near: f64) -> Option<Vertex> {

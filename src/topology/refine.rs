@@ -145,15 +145,7 @@ mod tests {
     use super::*;
     use crate::density::{Density, Observable};
     use crate::space::Grading;
-
-    /// A density given by its primitive in one dimension, so that values are exact averages.
-    fn averages(axis: &Axis, primitive: impl Fn(f64) -> f64) -> EstimatedDensity {
-        let edges = axis.edges().windows(2);
-        let values: Vec<f64> = edges
-            .map(|edge| (primitive(edge[1]) - primitive(edge[0])) / (edge[1] - edge[0]))
-            .collect();
-        exact(vec![axis.clone()], values)
-    }
+    use crate::topology::analytic_tests::averages;
 
     fn exact(axes: Vec<Axis>, values: Vec<f64>) -> EstimatedDensity {
         EstimatedDensity::new(Observable::Marginal(0), Density { axes, values })

@@ -57,6 +57,17 @@ fn exact(axes: Vec<Axis>, values: Vec<f64>) -> EstimatedDensity {
     EstimatedDensity::new(observable, density)
 }
 
+/// Values of one axis that are given by their primitive, so that they are exact averages.
+pub(super) fn averages(axis: &Axis, primitive: impl Fn(f64) -> f64) -> EstimatedDensity {
+    let edges = axis.edges().windows(2);
+    let values = edges.map(|edge| (primitive(edge[1]) - primitive(edge[0])) / (edge[1] - edge[0]));
+    let density = Density {
+        axes: vec![axis.clone()],
+        values: values.collect(),
+    };
+    EstimatedDensity::new(Observable::Marginal(0), density)
+}
+
 pub(super) fn detect(estimated: &EstimatedDensity) -> Detection {
     PersistenceDetector::new(DetectOptions::default(), 60).detect(estimated)
 }
