@@ -349,28 +349,12 @@ impl Draft {
 
     /// What is said of an axis, made where nothing was.
     pub(super) fn axis_mut(&mut self, name: &str) -> &mut AxisDraft {
-        let known = self.axes.iter().position(|axis| axis.name == name);
-        let index = known.unwrap_or(self.axes.len());
-        if known.is_none() {
-            self.axes.push(AxisDraft {
-                name: name.to_owned(),
-                ..AxisDraft::default()
-            });
-        }
-        &mut self.axes[index]
+        entry(&mut self.axes, name, |one| &mut one.name)
     }
 
     /// What is said of a passage, made where nothing was.
     pub(super) fn passage_mut(&mut self, name: &str) -> &mut PassageDraft {
-        let known = self.passages.iter().position(|one| one.name == name);
-        let index = known.unwrap_or(self.passages.len());
-        if known.is_none() {
-            self.passages.push(PassageDraft {
-                name: name.to_owned(),
-                ..PassageDraft::default()
-            });
-        }
-        &mut self.passages[index]
+        entry(&mut self.passages, name, |one| &mut one.name)
     }
 
     /// What is said of a passage.
@@ -380,15 +364,7 @@ impl Draft {
 
     /// What is said of a quantity's values, made where nothing was.
     pub(super) fn bins_mut(&mut self, name: &str) -> &mut BinsDraft {
-        let known = self.bins.iter().position(|bins| bins.name == name);
-        let index = known.unwrap_or(self.bins.len());
-        if known.is_none() {
-            self.bins.push(BinsDraft {
-                name: name.to_owned(),
-                ..BinsDraft::default()
-            });
-        }
-        &mut self.bins[index]
+        entry(&mut self.bins, name, |one| &mut one.name)
     }
 
     /// What is said of a quantity's values.
@@ -401,4 +377,20 @@ impl Draft {
         self.parameters.retain(|(known, _)| known != name);
         self.parameters.push((name.to_owned(), value));
     }
+}
+
+/// The entry of a name, made where there is none; `name_of` is where an entry has its name.
+fn entry<'a, T: Default>(
+    entries: &'a mut Vec<T>,
+    name: &str,
+    name_of: fn(&mut T) -> &mut String,
+) -> &'a mut T {
+    let known = entries.iter_mut().position(|one| name_of(one) == name);
+    let index = known.unwrap_or(entries.len());
+    if known.is_none() {
+        let mut one = T::default();
+        name.clone_into(name_of(&mut one));
+        entries.push(one);
+    }
+    &mut entries[index]
 }

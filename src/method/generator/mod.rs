@@ -6,6 +6,7 @@ mod angles_tests;
 mod coarse;
 mod cost;
 mod forcing;
+mod judgement;
 mod jumps;
 mod largest_exponent;
 #[cfg(test)]

@@ -2,7 +2,8 @@
 
 use super::super::names::list;
 use super::super::value::Plain;
-use super::field::{AUTO, PERIODIC, ends_of};
+use super::field::{PERIODIC, ends_of};
+use super::in_file::AUTO;
 use crate::figure::FigureWidth;
 
 /// Condition on a number, in words and as a test. Numbers are always finite.

@@ -4,6 +4,7 @@
 //! Defaults that a program option has are those of its `Default`, got as the value of a file that says nothing.
 
 mod field;
+mod in_file;
 mod kind;
 mod table;
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! Every key of a sweep file, declared once: path, kind of value, default, meaning, and where the value lives.
 
 use super::field::{
-    BOUNDS, Field, InFile, Named, PERIOD, SWITCH, UNTIL, always, formulas, of_axis, of_bins,
-    of_methods, of_passage, optional,
+    BOUNDS, Field, PERIOD, UNTIL, always, formulas, of_axis, of_bins, of_methods, of_passage,
+    optional,
 };
+use super::in_file::{AUTO, InFile, Named, SWITCH};
 use super::kind::{
     ANY, DPI, Kind, LINE, NOT_NEGATIVE, OPEN_UNIT, POSITIVE, SHARE, STEP, TEXT, UP_TO_ONE,
 };
@@ -310,7 +311,7 @@ fn switch() -> Vec<&'static str> {
 }
 
 fn automatic() -> Vec<&'static str> {
-    vec![super::field::AUTO]
+    vec![AUTO]
 }
 
 fn models() -> Vec<&'static str> {
