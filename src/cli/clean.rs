@@ -33,7 +33,7 @@ pub(super) fn run(arguments: &CleanArguments) -> Result<Outcome, CommandError> {
     if going.is_empty() {
         return print("nothing to remove\n");
     }
-    print(&listed(&going))?;
+    print(&list(&going))?;
     if !arguments.yes && !agreed()? {
         print("nothing was removed\n")?;
         return Ok(Outcome::Partial);
@@ -82,7 +82,7 @@ fn count(runs: usize) -> String {
     }
 }
 
-fn listed(going: &[Removable]) -> String {
+fn list(going: &[Removable]) -> String {
     let mut text = String::new();
     let mut bytes = 0;
     for one in going {

@@ -1,7 +1,7 @@
 //! `pbif curve`, and `pbif sweep` of a file with `[curve]`: from located rows, the curves of the same P-bifurcations in
 //! the plane of the swept and a second parameter.
 
-mod told;
+mod words;
 
 use std::path::{Path, PathBuf};
 
@@ -15,7 +15,7 @@ use crate::continuation::{Located, SourceError, SweepResult};
 use crate::job::{CurveJob, Done, Job as _, JobError, Outcome, Start, curve_rows};
 use crate::run::{CURVES, RunError};
 use crate::sweep_file::{SolveError, Sweep, SweepFile, list};
-pub(super) use told::codimension_line;
+pub(super) use words::codimension_line;
 
 /// Sections of a run's sweep that may be set anew.
 const SECTIONS: [&str; 4] = ["detect", "locate", "figures", "curve"];
@@ -158,7 +158,7 @@ impl Following<'_> {
 
 impl Printed for CurveJob<'_> {
     fn text(&self, done: &Done<CurveTree>, home: &Path) -> String {
-        let mut text = told::summary(self, &done.found);
+        let mut text = words::summary(self, &done.found);
         if done.outcome == Outcome::Interrupted {
             text += &format!("interrupted: {}\n", kept(self, home));
         }

@@ -25,7 +25,7 @@ pub(super) fn run(arguments: &ExploreArguments) -> Result<Outcome, CommandError>
         return serve(arguments);
     }
     if arguments.port.is_some() {
-        return Err(refused(
+        return Err(refusal(
             "`--port` is for a sweep file: the page of a run is a file",
         ));
     }
@@ -61,7 +61,7 @@ fn curves_of(run: &Path) -> String {
 /// Writes the page of a map of regimes, or of curves, whose densities are solved.
 fn of_plane(stored: &StoredPlane, arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
     if !arguments.overrides.is_empty() {
-        return Err(refused(
+        return Err(refusal(
             "`--set` is for a sweep file or the run of a sweep: what the page of a map or of curves shows stands in its tables",
         ));
     }
@@ -130,7 +130,7 @@ fn text(page: &StoredPage, file: &Path) -> String {
 /// Serves the live page of a sweep file.
 fn serve(arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
     if arguments.html.is_some() || arguments.force {
-        return Err(refused(
+        return Err(refusal(
             "`--html` and `--force` are for the folder of a run: `pbif sweep FILE` makes one",
         ));
     }
@@ -177,6 +177,6 @@ fn open(address: &str) {
     }
 }
 
-fn refused(title: &str) -> CommandError {
+fn refusal(title: &str) -> CommandError {
     CommandError::Input(Diagnostic::new(title).into())
 }

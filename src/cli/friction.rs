@@ -34,7 +34,7 @@ pub(super) fn run(
         .iter()
         .map(|(name, value)| (&name[..], *value))
         .collect();
-    let values = shown_values(model, &given).map_err(|error| refused(model, &error))?;
+    let values = shown_values(model, &given).map_err(|error| refusal(model, &error))?;
     let figures = Figures::of_friction(model, &values, &model.title).with_style(&style);
     let figures = figures.draw_all();
     if figures.is_empty() {
@@ -102,7 +102,7 @@ fn value(model: &Model, given: &str) -> Result<(String, f64), Report> {
     }
 }
 
-fn refused(model: &Model, error: &SystemError) -> Report {
+fn refusal(model: &Model, error: &SystemError) -> Report {
     let report = Diagnostic::new(error.to_string());
     report
         .remedy(format!(
@@ -136,18 +136,18 @@ fn without_friction(model: &Model) -> Report {
 mod tests {
     use super::*;
 
-    fn told(report: &Report) -> String {
+    fn words(report: &Report) -> String {
         report.render(false)
     }
 
     #[test]
     fn what_cannot_be_drawn_is_told_with_what_can() {
-        let text = told(&without_friction(&registry::find("bistable").unwrap()));
+        let text = words(&without_friction(&registry::find("bistable").unwrap()));
         for words in ["`bistable` has no friction law", "coulomb", "bliman_sorine"] {
             assert!(text.contains(words), "{words} not in {text}");
         }
         assert!(!text.contains("rayleigh"), "{text}");
-        let text = told(&without_friction(&registry::find("coulomb").unwrap()));
+        let text = words(&without_friction(&registry::find("coulomb").unwrap()));
         assert!(text.contains("is zero with these values"), "{text}");
     }
 
@@ -157,14 +157,14 @@ mod tests {
         assert_eq!(value(&lugre, "f_s=2").unwrap(), ("f_s".to_owned(), 2.0));
         let long = value(&lugre, "system.parameters.f_s = 2").unwrap();
         assert_eq!(long, ("f_s".to_owned(), 2.0));
-        let text = told(&value(&lugre, "lamda=2").unwrap_err());
+        let text = words(&value(&lugre, "lamda=2").unwrap_err());
         assert!(
             text.contains("has no parameter `lamda`") && text.contains("lambda"),
             "{text}"
         );
-        let text = told(&value(&lugre, "f_s=high").unwrap_err());
+        let text = words(&value(&lugre, "f_s=high").unwrap_err());
         assert!(text.contains("gives no number"), "{text}");
-        let text = told(&value(&lugre, "f_s").unwrap_err());
+        let text = words(&value(&lugre, "f_s").unwrap_err());
         assert!(text.contains("gives no number"), "{text}");
     }
 }

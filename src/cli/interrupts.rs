@@ -11,7 +11,7 @@ use crate::cancellation::Cancellation;
 pub(super) fn cancel(cancellation: &Cancellation) -> std::io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
     use signal_hook::iterator::Signals;
-    let ignored = ignored();
+    let ignored = ignored_signals();
     let is_ignored = |signal: i32| ignored & (1 << (signal - 1)) != 0;
     // A shell's `&` ignores both of these, by habit and for nobody's sake: an interrupt sent to such a run is meant for
     // it.
@@ -66,7 +66,7 @@ fn ask(asked: &Cancellation) {
 
 /// Signals that are ignored, a bit each from the first on; none where the system does not say.
 #[cfg(unix)]
-fn ignored() -> u64 {
+fn ignored_signals() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mut lines = status.lines();
     let mask = lines.find_map(|line| line.strip_prefix("SigIgn:"));

@@ -73,7 +73,7 @@ fn of_map(arguments: &MergeArguments) -> Result<Outcome, CommandError> {
             .remedy("compute the shards of the map that are missing; each goes on with `--resume`");
         return Err(CommandError::Input(found.into()));
     }
-    let shards = MapShards::open(&arguments.run).map_err(refused)?;
+    let shards = MapShards::open(&arguments.run).map_err(refusal)?;
     let file = SweepFile::parse("the shards' sweep", &shards.sweep_file);
     let spec = file.validate()?.fixed()?;
     let path = arguments.out.as_deref().unwrap_or(&arguments.run);
@@ -84,7 +84,7 @@ fn of_map(arguments: &MergeArguments) -> Result<Outcome, CommandError> {
 }
 
 /// What is said of shards of a map that cannot be read.
-fn refused(error: RunError) -> CommandError {
+fn refusal(error: RunError) -> CommandError {
     let RunError::MissingShards { path, missing, .. } = &error else {
         return error.into();
     };

@@ -31,7 +31,7 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<Outcome, CommandError> 
     let (mut text, mut outcome) = files(run.damage()?);
     if arguments.recompute > 0 && outcome_allows(&run, outcome)? {
         let (threads, cancellation) = interruptible(None)?;
-        let again = threads.install(|| recomputed(&run, arguments.recompute, &cancellation))?;
+        let again = threads.install(|| recompute(&run, arguments.recompute, &cancellation))?;
         text += &again.0;
         outcome = match again.1 {
             Outcome::Complete => outcome,
@@ -72,13 +72,13 @@ fn files(checked: Option<Checked>) -> (String, Outcome) {
 }
 
 /// Solves points again; those that are not what is stored are said.
-fn recomputed(
+fn recompute(
     run: &StoredRun,
     count: usize,
     cancellation: &Cancellation,
 ) -> Result<(String, Outcome), CommandError> {
     let sweep = run.sweep_file().validate()?.fixed()?;
-    let points = picked(run.solved_points(&sweep)?, count);
+    let points = pick(run.solved_points(&sweep)?, count);
     let parameter = sweep.problem.family().parameter();
     let (mut text, mut good) = (String::new(), 0);
     for point in &points {
@@ -110,7 +110,7 @@ fn recomputed(
 }
 
 /// So many of the points, at random, in their order.
-fn picked(mut points: Vec<Point>, count: usize) -> Vec<Point> {
+fn pick(mut points: Vec<Point>, count: usize) -> Vec<Point> {
     let random = RandomState::new();
     while points.len() > count {
         let place = random.hash_one(points.len()) % points.len() as u64;

@@ -71,7 +71,7 @@ pub(super) fn band(points: &[&Point], observable: usize, left: usize, doubt: f64
             births.extend(found);
         }
     }
-    let untold = (births.is_empty()).then(|| told_again(points, observable, left, doubt));
+    let untold = (births.is_empty()).then(|| next_certain_value(points, observable, left, doubt));
     if let Some(far) = untold.flatten() {
         change.sinks = true;
         births.push((change.value, far.min(a.value), far.max(b.value)));
@@ -93,7 +93,12 @@ pub(super) fn band(points: &[&Point], observable: usize, left: usize, doubt: f64
 
 /// Where the signs of indicators at a centre are certain on one side only: the first value on the other side at which
 /// they are so again, or the last one there is. Until then nothing tells whether what is there changes.
-fn told_again(points: &[&Point], observable: usize, left: usize, doubt: f64) -> Option<f64> {
+fn next_certain_value(
+    points: &[&Point],
+    observable: usize,
+    left: usize,
+    doubt: f64,
+) -> Option<f64> {
     let is_told = |point: &&Point| {
         let mut indicators = point.detections[observable].indicators.iter().peekable();
         indicators.peek().is_some() && indicators.all(|one| one.sign(doubt).is_some())

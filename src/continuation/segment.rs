@@ -24,13 +24,13 @@ pub(super) struct Work<'a> {
     largest_distance: f64,
     /// The value that the source must not refuse.
     first: Option<f64>,
-    told: Mutex<Told<'a>>,
+    told: Mutex<Listener<'a>>,
     /// Whether values were left out because the sweep is to end.
     ended: AtomicBool,
 }
 
 /// Whom points are told.
-struct Told<'a> {
+struct Listener<'a> {
     observer: &'a mut dyn Observer,
     done: usize,
     /// Given values that are not done.
@@ -57,7 +57,7 @@ impl<'a> Work<'a> {
             cancellation,
             largest_distance,
             first,
-            told: Mutex::new(Told {
+            told: Mutex::new(Listener {
                 observer,
                 done: 0,
                 remaining: planned,

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::series_map::{SeriesMap, laid_out};
+use super::series_map::{SeriesMap, layout_axis};
 use super::spread::{Averages, Coordinate, Detail, Spread};
 use super::{Density, DensityError, Moments, Observable, cell_volumes};
 use crate::space::{Axis, CellSpace};
@@ -116,7 +116,7 @@ impl Projection {
         let Some(series) = SeriesMap::new(space, observable, is_coarse) else {
             return Ok(nodes);
         };
-        let axes: Vec<Axis> = nodes.axes.iter().map(laid_out).collect();
+        let axes: Vec<Axis> = nodes.axes.iter().map(layout_axis).collect();
         Ok(Self {
             series: Some(Arc::new(series)),
             volumes: cell_volumes(&axes),

@@ -15,7 +15,7 @@ const LEFT_OUT: usize = 2;
 
 /// The axis along which a density is laid out: the axis itself, or bins of equal width over an axis of modes, the same
 /// whatever their number.
-pub(crate) fn laid_out(axis: &Axis) -> Axis {
+pub(crate) fn layout_axis(axis: &Axis) -> Axis {
     let (from, to) = axis.series_range();
     if axis.is_modes() && axis.is_closed() {
         Axis::turn(from, to, BINS_OF_A_TURN).unwrap_or_else(|_| axis.clone())
@@ -53,7 +53,7 @@ impl SeriesMap {
             .collect();
         let mut steps = Vec::new();
         for (place, axis) in axes.iter().enumerate().filter(|(_, axis)| axis.is_modes()) {
-            let bins = laid_out(axis);
+            let bins = layout_axis(axis);
             let used = if is_coarse {
                 axis.count().saturating_sub(LEFT_OUT).max(1)
             } else {

@@ -19,7 +19,7 @@ const BAND_BITS: u32 = 12;
 
 /// What the page is told, beside its arrays.
 #[derive(Debug, Serialize)]
-struct Told<'a> {
+struct PageData<'a> {
     live: bool,
     #[serde(flatten)]
     scene: &'a Scene,
@@ -39,15 +39,15 @@ struct Arrays<'a> {
     frames: &'a [usize],
     /// Edges of the cells along each axis.
     edges: Vec<Vec<f64>>,
-    values: Option<Stated>,
-    band: Option<Stated>,
+    values: Option<Packing>,
+    band: Option<Packing>,
     /// What the band is.
     band_is: Option<&'static str>,
 }
 
 /// How values are packed that stand in a block of the page.
 #[derive(Debug, Serialize)]
-struct Stated {
+struct Packing {
     block: usize,
     top: f64,
     levels: u32,
@@ -88,7 +88,7 @@ impl Shown<'_> {
             one.frames = &numbers;
         }
         let frames = self.points.iter();
-        let told = Told {
+        let told = PageData {
             live: false,
             scene: &scene,
             plane: self.plane,
@@ -116,10 +116,10 @@ fn pack<'a>(
             .iter()
             .filter_map(|point| point.densities.get(observable))
     };
-    let mut add = |frames: &[&[f64]], scale: Scale, bits: u32| -> Result<Stated, ExploreError> {
+    let mut add = |frames: &[&[f64]], scale: Scale, bits: u32| -> Result<Packing, ExploreError> {
         let packed = Packed::new(frames, &at, scale, bits);
         blocks.push(packed.bytes);
-        Ok(Stated {
+        Ok(Packing {
             block: blocks.len() - 1,
             top: packed.top,
             levels: packed.levels,

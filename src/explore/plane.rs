@@ -40,7 +40,7 @@ pub(super) struct PlaneFound {
     nodes: usize,
     /// Of every watched density.
     regions: Vec<Regions>,
-    curves: Vec<CurveTold>,
+    curves: Vec<PlaneCurve>,
     points: Vec<SpecialPoint>,
 }
 
@@ -66,7 +66,7 @@ struct Anchor {
 
 /// A curve from end to end.
 #[derive(Debug, Serialize)]
-struct CurveTold {
+struct PlaneCurve {
     name: String,
     /// Number among the observables.
     observable: Option<usize>,
@@ -138,7 +138,7 @@ impl PlaneScene {
             .collect();
         let told = curves.iter().enumerate().map(|(index, curve)| {
             let start = if index == 0 { start } else { "start" };
-            CurveTold::new(subject, (index, curve), start)
+            PlaneCurve::new(subject, (index, curve), start)
         });
         let points = codimension_two(curves);
         let points = points
@@ -200,7 +200,7 @@ impl PlaneScene {
     }
 }
 
-impl CurveTold {
+impl PlaneCurve {
     fn new(subject: &Subject, (index, curve): (usize, &Curve), start: &str) -> Self {
         let mut observables = subject.observables.iter();
         let finite = |value: f64| if value.is_finite() { value } else { 0.0 };

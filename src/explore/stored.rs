@@ -190,7 +190,7 @@ mod tests {
             .unwrap()
     }
 
-    fn told(html: &str) -> Value {
+    fn words(html: &str) -> Value {
         let json = miniz_oxide::inflate::decompress_to_vec_zlib(&block(html, "scene")).unwrap();
         serde_json::from_slice(&json).unwrap()
     }
@@ -213,7 +213,7 @@ mod tests {
     fn a_page_holds_the_densities_and_what_was_found_in_them() {
         let (sweep, result) = swept(&SMALL);
         let page = StoredPage::new(&sweep, &result).unwrap();
-        let told = told(page.html());
+        let told = words(page.html());
         assert_eq!(page.joint_bits(), Some(14));
         assert_eq!(told["swept"]["name"], "f_c");
         assert_eq!(told["sweep_file"], sweep.to_toml());
@@ -263,7 +263,7 @@ mod tests {
         ]);
         let (sweep, result) = swept(&settings);
         assert!(result.points[0].densities.is_empty());
-        let told = told(StoredPage::new(&sweep, &result).unwrap().html());
+        let told = words(StoredPage::new(&sweep, &result).unwrap().html());
         assert_eq!(told["frames"][0]["status"], "no-steady-state");
         let words = told["frames"][0]["findings"][0].as_str().unwrap();
         assert!(words.starts_with("no steady state in Ω"), "{words}");

@@ -85,7 +85,7 @@ fn command(letter: char) -> Option<&'static str> {
 /// Plain text for a cell of a table: special characters escaped, mathematical signs as mathematics, letters of
 /// European languages as they are, and anything else by its code point.
 pub(crate) fn escape(text: &str) -> String {
-    text.chars().map(escaped).collect()
+    text.chars().map(escape_letter).collect()
 }
 
 /// A text whose names stand for symbols, such as `f_c`: these as mathematics, the rest as [`escape`] has it.
@@ -111,7 +111,7 @@ pub(crate) fn with_symbols(text: &str) -> String {
     made
 }
 
-fn escaped(letter: char) -> String {
+fn escape_letter(letter: char) -> String {
     match letter {
         '&' | '%' | '$' | '#' | '_' | '{' | '}' => format!("\\{letter}"),
         '\\' => "\\textbackslash{}".to_owned(),

@@ -60,7 +60,7 @@ fn judge(system: &dyn System, space: &CellSpace, masses: &[f64], index: usize) -
     let lightest = WEIGHT * densities.iter().copied().fold(0.0, f64::max);
     let counts = |cell: usize| densities[cell] > lightest;
     let stride: usize = space.shape()[index + 1..].iter().product();
-    let mut seen = Seen {
+    let mut seen = LineSurvey {
         system,
         space,
         index,
@@ -118,7 +118,7 @@ fn jumps_inside_cells(
 }
 
 /// What the grid lines along an axis have shown.
-struct Seen<'a> {
+struct LineSurvey<'a> {
     system: &'a dyn System,
     space: &'a CellSpace,
     index: usize,
@@ -131,7 +131,7 @@ struct Seen<'a> {
     weight: f64,
 }
 
-impl Seen<'_> {
+impl LineSurvey<'_> {
     /// Adds a grid line: its cells, and the masses of those that count.
     fn look_at(&mut self, cells: &[usize], masses: &[Option<f64>]) {
         let axis = &self.space.axes()[self.index];

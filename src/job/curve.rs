@@ -13,7 +13,7 @@ use crate::continuation::{DensitySource, Located, SourceError, SweepResult};
 use crate::figure::{Figure, Figures};
 use crate::run::{JobFolder, JournalledSource, Layout, RunError, curve_files, format_number};
 use crate::sweep_file::{CurveSettings, Diagnostic, Report, Sweep};
-use refusals::{check_corners, no_indicator, plane, refused, refused_plane, which_parameter};
+use refusals::{check_corners, no_indicator, plane, refusal, refused_plane, which_parameter};
 
 /// The curves from one row of a sweep, as `[curve]` of its file asks for them.
 pub struct CurveJob<'a> {
@@ -164,7 +164,7 @@ impl Job for CurveJob<'_> {
         match found {
             Ok(tree) => Ok(Some(tree)),
             Err(CurveError::Source(SourceError::Interrupted)) => Ok(None),
-            Err(error) => Err(refused(error).into()),
+            Err(error) => Err(refusal(error).into()),
         }
     }
 

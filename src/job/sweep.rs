@@ -98,7 +98,7 @@ impl<'a> SweepJob<'a> {
         Ok(manifest)
     }
 
-    fn detected(&self, gathered: Gathered) -> SweepResult {
+    fn detect_again(&self, gathered: Gathered) -> SweepResult {
         let sweep = self.sweep;
         let swept = (sweep.problem.subject().clone(), sweep.settings.points);
         let Gathered { points, checks } = gathered;
@@ -176,7 +176,7 @@ impl Job for SweepJob<'_> {
                 _ => Gathered::default(),
             };
             self.begun = Some((run, manifest));
-            return Ok(Some(self.detected(gathered)));
+            return Ok(Some(self.detect_again(gathered)));
         };
         let journal = folder.journal(&self.made_of(), goes_on)?;
         if goes_on {

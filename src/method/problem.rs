@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use super::MethodError;
 use super::measures::{DerivedMeasure, columns_of_family};
 use crate::continuation::{CellCheck, Subject, Want};
-use crate::density::{DensityError, Observable, Projection, QuantityMoments, laid_out};
+use crate::density::{DensityError, Observable, Projection, QuantityMoments, layout_axis};
 use crate::space::{Axis, CellSpace};
 use crate::system::{AtPhase, BoundQuantity, Family};
 
@@ -175,7 +175,7 @@ impl Problem {
     pub(crate) fn axes_of(&self, observable: Observable) -> Vec<Axis> {
         let all = || self.space.axes().iter().chain(&self.bins);
         let axes = observable.axes().into_iter();
-        axes.filter_map(|axis| all().nth(axis).map(laid_out))
+        axes.filter_map(|axis| all().nth(axis).map(layout_axis))
             .collect()
     }
 

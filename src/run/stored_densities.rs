@@ -10,7 +10,7 @@ use super::{RunError, arrays};
 use crate::continuation::Subject;
 use crate::density::{
     Density, EstimatedDensity, Kink, NEGLIGIBLE, Observable, Structure, Truncation, Variants,
-    errors_by_schemes, laid_out,
+    errors_by_schemes, layout_axis,
 };
 use crate::method::OneAxisFamily;
 use crate::space::{Axis, CellSpace};
@@ -308,7 +308,7 @@ impl Opened {
         }
         let numbers = observable.axes();
         let known = || space.axes().iter().chain(bins);
-        let of = |&axis: &usize| known().nth(axis).map(laid_out);
+        let of = |&axis: &usize| known().nth(axis).map(layout_axis);
         let axes: Vec<Axis> = numbers.iter().filter_map(of).collect();
         for (&number, axis) in numbers.iter().zip(&axes) {
             if self.whole(&arrays::edges(family.axis(number)))? != axis.edges() {

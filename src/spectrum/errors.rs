@@ -65,7 +65,7 @@ pub(super) struct Estimate {
 
 impl Estimate {
     /// Extrapolated to no dissipation.
-    pub(super) fn extrapolated(&self) -> f64 {
+    pub(super) fn extrapolation(&self) -> f64 {
         self.value + 2.0 * self.change
     }
 }
@@ -73,10 +73,10 @@ impl Estimate {
 /// Numbers with their errors, from those on the cells of a sweep and those on fewer.
 pub(super) fn combined(finest: &[Estimate], fewer: &[Vec<Estimate>]) -> Vec<(f64, f64)> {
     let known = finest.iter().enumerate().map(|(number, one)| {
-        let value = one.extrapolated();
+        let value = one.extrapolation();
         let mut error = DAMPED * one.change.abs() + one.error;
         for (others, (_, times)) in fewer.iter().zip(FEWER) {
-            let other = others.get(number).map_or(f64::NAN, Estimate::extrapolated);
+            let other = others.get(number).map_or(f64::NAN, Estimate::extrapolation);
             let off = MARGIN * times * (value - other).abs();
             error = if off.is_nan() {
                 f64::INFINITY

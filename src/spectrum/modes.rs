@@ -66,7 +66,7 @@ pub(super) struct GridMode {
 
 impl GridMode {
     /// Extrapolated to no dissipation.
-    pub(super) fn extrapolated(&self) -> Complex<f64> {
+    pub(super) fn extrapolation(&self) -> Complex<f64> {
         self.value + self.change * 2.0
     }
 }

@@ -26,7 +26,7 @@ impl Peak {
     pub(super) fn of(transfer: &Transfer, observable: usize, highest: f64) -> Option<Self> {
         let slope = |frequency: f64| transfer.power(frequency, observable)[1];
         let power = |frequency: f64| transfer.power(frequency, observable)[0];
-        let at = maxima(&slope, &looked_at(transfer, highest)).into_iter();
+        let at = maxima(&slope, &shape_frequencies(transfer, highest)).into_iter();
         let heights = at.map(|frequency| (frequency, power(frequency)));
         let (frequency, height) = heights.max_by(|a, b| a.1.total_cmp(&b.1))?;
         let peak = Self {
@@ -54,7 +54,7 @@ impl Peak {
                 }
                 if over(place) < 0.0 {
                     let from = |at: f64| over(self.frequency + sign * at);
-                    return Some(halved(&from, inside, away));
+                    return Some(bisection(&from, inside, away));
                 }
                 inside = away;
                 away *= 1.3;
@@ -77,12 +77,12 @@ pub(super) fn steepest_rise(transfer: &Transfer, observable: usize, highest: f64
         let (slope, bend) = shape(frequency);
         slope + frequency * (bend - slope * slope)
     };
-    let at = maxima(&change, &looked_at(transfer, highest)).into_iter();
+    let at = maxima(&change, &shape_frequencies(transfer, highest)).into_iter();
     at.map(rise).max_by(f64::total_cmp)
 }
 
 /// Frequencies at which shapes of spectra are looked at, ascending: even ones, and some beside each pole.
-fn looked_at(transfer: &Transfer, highest: f64) -> Vec<f64> {
+fn shape_frequencies(transfer: &Transfer, highest: f64) -> Vec<f64> {
     let step = highest / LOOKED_AT as f64;
     let mut places: Vec<f64> = (0..=LOOKED_AT)
         .map(|number| (number as f64 + 0.5) * step)
@@ -101,12 +101,12 @@ fn maxima(derivative: &dyn Fn(f64) -> f64, places: &[f64]) -> Vec<f64> {
     let slopes: Vec<f64> = places.iter().map(|&place| derivative(place)).collect();
     let is_top = |number: &usize| slopes[number - 1] > 0.0 && slopes[*number] <= 0.0;
     let tops = (1..places.len()).filter(is_top);
-    tops.map(|number| halved(derivative, places[number - 1], places[number]))
+    tops.map(|number| bisection(derivative, places[number - 1], places[number]))
         .collect()
 }
 
 /// Where a function that is positive at `a` and not at `b` changes its sign.
-fn halved(function: &dyn Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
+fn bisection(function: &dyn Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
     for _ in 0..HALVINGS {
         let middle = 0.5 * (a + b);
         if function(middle) > 0.0 {

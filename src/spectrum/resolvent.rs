@@ -73,7 +73,7 @@ impl Resolvent {
             grid,
             observables,
             deviations: &deviations,
-            looked_at: looked_at(frequencies),
+            looked_at: some_of(frequencies),
             columns: Basis::default(),
             rows: Basis::default(),
             products: Products::default(),
@@ -116,7 +116,7 @@ fn deviation(masses: &[f64], values: &[f64]) -> Vec<f64> {
 }
 
 /// A few of the frequencies, the first and the last among them.
-fn looked_at(frequencies: &[f64]) -> Vec<f64> {
+fn some_of(frequencies: &[f64]) -> Vec<f64> {
     let last = frequencies.len().saturating_sub(1);
     let count = LOOKED_AT.min(frequencies.len());
     let places = (0..count).map(|number| number * last / count.saturating_sub(1).max(1));

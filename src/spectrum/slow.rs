@@ -68,7 +68,7 @@ pub fn slow_modes(
     }
     let mut known: Vec<(Complex<f64>, Complex<f64>)> = found
         .iter()
-        .map(GridMode::extrapolated)
+        .map(GridMode::extrapolation)
         .zip(errors)
         .collect();
     in_order(&mut known, |(value, _)| *value);
@@ -81,7 +81,7 @@ pub fn slow_modes(
     known.truncate(wanted);
     let first = found.iter().find(|one| {
         let slowest = known.first();
-        slowest.is_some_and(|(value, _)| one.extrapolated() == *value)
+        slowest.is_some_and(|(value, _)| one.extrapolation() == *value)
     });
     let left = first.map(|one| one.left.clone()).unwrap_or_default();
     let modes = known.into_iter().map(|(value, error)| SlowMode {
@@ -110,7 +110,7 @@ fn matched(modes: &[GridMode], others: &[GridMode]) -> Vec<Complex<f64>> {
     for (index, one) in modes.iter().enumerate() {
         for (other, two) in others.iter().enumerate() {
             pairs.push((
-                (one.extrapolated() - two.extrapolated()).norm(),
+                (one.extrapolation() - two.extrapolation()).norm(),
                 index,
                 other,
             ));
@@ -122,7 +122,8 @@ fn matched(modes: &[GridMode], others: &[GridMode]) -> Vec<Complex<f64>> {
     for (_, index, other) in pairs {
         if differences[index].re.is_infinite() && !taken[other] {
             taken[other] = true;
-            differences[index] = sizes(modes[index].extrapolated() - others[other].extrapolated());
+            differences[index] =
+                sizes(modes[index].extrapolation() - others[other].extrapolation());
         }
     }
     differences

@@ -180,7 +180,7 @@ impl<'a> Cover<'a> {
     ) -> Option<Detection> {
         let grid = grid(&self.laid)?;
         let limits = limits(&self.laid, grid.values.len());
-        let found = Found::new(self, grid, &limits);
+        let found = MiddleTurn::new(self, grid, &limits);
         let mut features = found.features(self);
         for feature in &mut features {
             feature.errors = place_error::errors(&self.laid, feature);
@@ -287,7 +287,7 @@ fn kinks(own: &EstimatedDensity) -> Vec<Kink> {
 }
 
 /// What there is in the middle turn.
-struct Found {
+struct MiddleTurn {
     /// The highest peak: as high as its density, and as high as it stands above the lowest saddle on the way round.
     highest: [Option<Candidate>; 2],
     /// Whether the highest ridge of a joint density runs around without a peak that stands out.
@@ -296,7 +296,7 @@ struct Found {
     signature: Signature,
 }
 
-impl Found {
+impl MiddleTurn {
     fn new(cover: &Cover<'_>, grid: CellValues<'_>, limits: &Limits) -> Self {
         let laid = &cover.laid;
         let (peaks, craters) = components(grid);

@@ -4,7 +4,8 @@ use super::candidate::{Candidate, judge};
 use super::closed::Cover;
 use super::exact::{self, by_kind_and_height, present_places};
 use super::indicator::{
-    Counted, at_centre, correct, flanks_from_centre, flanks_of_crests, put_right, shoulders,
+    Counted, at_centre, correct, correct_about_centre, flanks_from_centre, flanks_of_crests,
+    shoulders,
 };
 use super::persistence::{components, grid};
 use super::place_error;
@@ -115,7 +116,7 @@ impl Detector for PersistenceDetector {
             rings_around_centre: around_centre.filter(|one| one.is_ring).count(),
         };
         let signature = correct(density, &indicators, self.doubt(), &counted);
-        put_right(density, &indicators, self.doubt(), &mut features);
+        correct_about_centre(density, &indicators, self.doubt(), &mut features);
         for feature in &mut features {
             feature.errors = place_error::errors(density, feature);
         }

@@ -4,7 +4,7 @@
 //! As for the rows of a sweep, the finer value is the better one and is kept: the curve moves by what the checked
 //! points show, interpolated along it, and the error of that is stated from the distance between coarse and fine.
 
-use super::reading::{Missing, Reader};
+use super::reading::{NoReading, Reader};
 use super::walked::{WalkPoint, Walked};
 use super::{CurvePoint, CurveWork, Task};
 use crate::continuation::grid::share_of_distance;
@@ -20,7 +20,7 @@ const NEIGHBOURS: usize = 2;
 
 /// What a check shows: how far uphill the curve is by it.
 #[derive(Debug, Clone, PartialEq)]
-enum Shown {
+enum Shift {
     Moved(f64),
     /// There is no such curve near.
     Nothing,
@@ -32,8 +32,8 @@ enum Shown {
 #[derive(Debug, Clone, PartialEq)]
 struct Check {
     index: usize,
-    finer: Option<Shown>,
-    enclosed: Option<Shown>,
+    finer: Option<Shift>,
+    enclosed: Option<Shift>,
 }
 
 impl Check {
@@ -41,10 +41,10 @@ impl Check {
     fn doubt(&self) -> Option<Doubt> {
         let failed = |by: CheckedBy, reason: &String| Some(Doubt::CheckFailed(by, reason.clone()));
         match (&self.finer, &self.enclosed) {
-            (Some(Shown::Nothing), _) => Some(Doubt::NotOnFinerCells),
-            (Some(Shown::Failed(reason)), _) => failed(CheckedBy::FinerCells(1), reason),
-            (_, Some(Shown::Nothing)) => Some(Doubt::NotBetweenClosedEnds),
-            (_, Some(Shown::Failed(reason))) => failed(CheckedBy::ClosedEnds, reason),
+            (Some(Shift::Nothing), _) => Some(Doubt::NotOnFinerCells),
+            (Some(Shift::Failed(reason)), _) => failed(CheckedBy::FinerCells(1), reason),
+            (_, Some(Shift::Nothing)) => Some(Doubt::NotBetweenClosedEnds),
+            (_, Some(Shift::Failed(reason))) => failed(CheckedBy::ClosedEnds, reason),
             _ => None,
         }
     }
@@ -79,7 +79,7 @@ impl Checks<'_> {
                 Err(SourceError::Interrupted) => {}
                 Err(SourceError::Method(error)) => checks
                     .iter_mut()
-                    .for_each(|check| check.finer = Some(Shown::Failed(error.to_string()))),
+                    .for_each(|check| check.finer = Some(Shift::Failed(error.to_string()))),
             }
             let leaks = walked
                 .points
@@ -122,7 +122,7 @@ impl Checks<'_> {
         walked: &Walked,
         selected: &[usize],
         work: &mut CurveWork,
-    ) -> Vec<Option<Shown>> {
+    ) -> Vec<Option<Shift>> {
         let mut reader = Reader::new(
             source,
             self.0.plane,
@@ -143,14 +143,14 @@ impl Checks<'_> {
                     let moved = (reading.indicator.value - value) / reading.steepness();
                     let same = moved.abs() <= SAME;
                     Some(if same {
-                        Shown::Moved(moved)
+                        Shift::Moved(moved)
                     } else {
-                        Shown::Nothing
+                        Shift::Nothing
                     })
                 }
-                Err(Missing::Indicator | Missing::Symmetry) => Some(Shown::Nothing),
-                Err(Missing::Density(reason)) => Some(Shown::Failed(reason)),
-                Err(Missing::Interrupted) => break,
+                Err(NoReading::Indicator | NoReading::Symmetry) => Some(Shift::Nothing),
+                Err(NoReading::Density(reason)) => Some(Shift::Failed(reason)),
+                Err(NoReading::Interrupted) => break,
             };
         }
         work.add(&reader.work);
@@ -239,8 +239,8 @@ fn between(checks: &[Check], nodes: &[WalkPoint], index: usize, of_distance: f64
         false => 0.0,
     };
     let nearest = if share <= 0.5 { below } else { above };
-    let moved = |shown: &Option<Shown>| match shown {
-        Some(Shown::Moved(moved)) => Some(*moved),
+    let moved = |shown: &Option<Shift>| match shown {
+        Some(Shift::Moved(moved)) => Some(*moved),
         _ => None,
     };
     let (a, b) = (moved(&below.finer), moved(&above.finer));

@@ -116,7 +116,7 @@ impl Reading {
 
 /// Why nothing was read.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Missing {
+pub(super) enum NoReading {
     /// There is no density, for this reason.
     Density(String),
     /// The density has no such indicator.
@@ -159,7 +159,7 @@ impl<'a> Reader<'a> {
 
 impl Reader<'_> {
     /// Reads at a place, the indicator nearest to `near`, with its derivatives.
-    pub(super) fn read(&mut self, at: [f64; 2], near: &[f64]) -> Result<Reading, Missing> {
+    pub(super) fn read(&mut self, at: [f64; 2], near: &[f64]) -> Result<Reading, NoReading> {
         let coordinate = self.plane.lay(at);
         let mut reading = self.solve(coordinate, at, near, true)?;
         if reading.gradient.iter().any(|part| part.is_nan()) {
@@ -171,7 +171,7 @@ impl Reader<'_> {
     }
 
     /// Reads at a coordinate of what is laid already, without derivatives.
-    pub(super) fn value(&mut self, coordinate: f64, near: &[f64]) -> Result<f64, Missing> {
+    pub(super) fn value(&mut self, coordinate: f64, near: &[f64]) -> Result<f64, NoReading> {
         let reading = self.solve(coordinate, [f64::NAN; 2], near, false)?;
         Ok(reading.indicator.value)
     }
@@ -183,25 +183,25 @@ impl Reader<'_> {
         at: [f64; 2],
         near: &[f64],
         with_gradient: bool,
-    ) -> Result<Reading, Missing> {
+    ) -> Result<Reading, NoReading> {
         let mut solution = self.session.solve(coordinate).map_err(missing)?;
         let report = &solution.report;
         self.work.count(report);
         if !report.status.is_resolved() {
-            return Err(Missing::Density(report.status.word().to_owned()));
+            return Err(NoReading::Density(report.status.word().to_owned()));
         }
         // Derivatives are those of what cells show, and so must values be.
         if let Some(density) = solution.densities.get_mut(self.observable) {
             density.structure.profile = None;
         }
         let density = solution.densities.get(self.observable);
-        let density = density.ok_or_else(|| Missing::Density("no density".to_owned()))?;
+        let density = density.ok_or_else(|| NoReading::Density("no density".to_owned()))?;
         let indicator = self.detector.indicator(density, self.kind, near);
         let has_centre = density.structure.centre.is_some() || !self.kind.traits().is_at_centre;
         let indicator = indicator.ok_or(if has_centre {
-            Missing::Indicator
+            NoReading::Indicator
         } else {
-            Missing::Symmetry
+            NoReading::Symmetry
         })?;
         let mut gradient = [f64::NAN; 2];
         if let Some(sensitivity) = solution.sensitivity.as_mut().filter(|_| with_gradient) {
@@ -211,7 +211,7 @@ impl Reader<'_> {
                 let along = along(self.detector, watched, &indicator, asked, &side.parameter);
                 *part = match along {
                     Ok(along) => along.map_or(f64::NAN, |along| along * side.length()),
-                    Err(SourceError::Interrupted) => return Err(Missing::Interrupted),
+                    Err(SourceError::Interrupted) => return Err(NoReading::Interrupted),
                     // At an end of a parameter's range; differences go inward.
                     Err(SourceError::Method(_)) => break,
                 };
@@ -242,7 +242,7 @@ impl Reader<'_> {
     }
 
     /// Derivatives by two places beside, on the side of the middle of the box.
-    fn differences(&mut self, reading: &Reading) -> Result<[f64; 2], Missing> {
+    fn differences(&mut self, reading: &Reading) -> Result<[f64; 2], NoReading> {
         let mut gradient = [0.0; 2];
         for (k, part) in gradient.iter_mut().enumerate() {
             let toward_the_middle = if reading.at[k] < 0.5 { 1.0 } else { -1.0 };
@@ -257,10 +257,10 @@ impl Reader<'_> {
     }
 }
 
-fn missing(error: SourceError) -> Missing {
+fn missing(error: SourceError) -> NoReading {
     match error {
-        SourceError::Interrupted => Missing::Interrupted,
-        SourceError::Method(error) => Missing::Density(error.to_string()),
+        SourceError::Interrupted => NoReading::Interrupted,
+        SourceError::Method(error) => NoReading::Density(error.to_string()),
     }
 }
 

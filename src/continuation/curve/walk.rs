@@ -1,7 +1,7 @@
 //! Following a curve: predicted along tangent and curvature, corrected along the gradient, in steps as long as the
 //! curve allows.
 
-use super::reading::{Missing, Reader, Reading};
+use super::reading::{NoReading, Reader, Reading};
 use super::walked::{WalkPoint, Walked, apart, within};
 use super::{CurveError, EndReason, Task, companion};
 use crate::continuation::SourceError;
@@ -224,10 +224,10 @@ fn correct(
         let reading = reader
             .read(at, sought.near)
             .map_err(|missing| match missing {
-                Missing::Density(reason) => EndReason::NoDensity(reason),
-                Missing::Indicator => EndReason::FeatureLost,
-                Missing::Symmetry => EndReason::SymmetryLost,
-                Missing::Interrupted => EndReason::Interrupted,
+                NoReading::Density(reason) => EndReason::NoDensity(reason),
+                NoReading::Indicator => EndReason::FeatureLost,
+                NoReading::Symmetry => EndReason::SymmetryLost,
+                NoReading::Interrupted => EndReason::Interrupted,
             })?;
         let steepness = reading.steepness();
         if !steepness.is_finite() || steepness == 0.0 {

@@ -243,7 +243,7 @@ fn checks_that_are_known_are_not_solved_again() {
 }
 
 /// As [`split`], with tails of which a depth is taken away.
-fn torn_split(depth: f64) -> Exact<impl Formula> {
+fn split_without_tails(depth: f64) -> Exact<impl Formula> {
     let whole = split().density;
     Exact::new(
         1,
@@ -259,7 +259,7 @@ fn torn_split(depth: f64) -> Exact<impl Formula> {
 #[test]
 fn nothing_is_located_in_a_density_that_is_negative() {
     let status = |depth: f64| {
-        let result = run(&torn_split(depth), (-0.5, 0.5, 11), 1e-4);
+        let result = run(&split_without_tails(depth), (-0.5, 0.5, 11), 1e-4);
         let row = rows(&result)[0].clone();
         assert!((row.value - 0.03).abs() <= row.error, "{row:?}");
         (row.status(), row.doubts)

@@ -18,7 +18,7 @@
 //! shards alone; curves run through all shards, so it follows them.
 
 mod crossing;
-mod drawn;
+mod curve_line;
 mod found;
 mod lattice;
 mod node;

@@ -1,7 +1,7 @@
 //! From which crossings of a map the next curves are followed.
 
 use super::crossing::Crossing;
-use super::drawn::SAME;
+use super::curve_line::SAME;
 use crate::topology::IndicatorKind;
 
 /// Starts of one indicator that may fail before its other crossings are not tried.
@@ -71,7 +71,7 @@ pub(super) fn is_alike(a: &Crossing, b: &Crossing) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::drawn::Drawn;
+    use super::super::curve_line::CurveLine;
     use super::*;
 
     fn crossing(kind: IndicatorKind, x: f64, y: f64) -> Crossing {
@@ -107,7 +107,7 @@ mod tests {
         assert!(found.iter().all(|one| one.at[1] == 0.4));
         assert_eq!(open.len(), 13);
         // Both neighbours lie on the curve itself: the line between them meets it nowhere, or everywhere.
-        let curve = Drawn {
+        let curve = CurveLine {
             observable: 0,
             kind: exact,
             line: vec![[0.3, 0.0], [0.3, 1.0]],

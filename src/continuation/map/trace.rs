@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::crossing::{Blurred, Crossing};
-use super::drawn::{Drawn, IDENTICAL};
+use super::curve_line::{CurveLine, IDENTICAL};
 use super::found::Untraced;
 use super::starts::{is_alike, starts};
 use super::{MapMaker, MapProgress};
@@ -36,7 +36,7 @@ impl Tracer<'_> {
         work: &mut CurveWork,
     ) -> (Vec<Curve>, Vec<Untraced>) {
         let mut curves = Vec::new();
-        let mut drawn: Vec<Drawn> = Vec::new();
+        let mut drawn: Vec<CurveLine> = Vec::new();
         let mut failures: Vec<(Crossing, String)> = Vec::new();
         let mut vague: Vec<(Crossing, String)> = Vec::new();
         let mut branches: Vec<CurveStart> = Vec::new();
@@ -55,7 +55,7 @@ impl Tracer<'_> {
                     && curve.points.len() >= FEWEST
                     && middle_error(&curve) <= VAGUE
                 {
-                    drawn.push(Drawn {
+                    drawn.push(CurveLine {
                         observable: start.observable,
                         kind: start.kind,
                         line: self.line(&curve),
@@ -74,7 +74,7 @@ impl Tracer<'_> {
                     Ok(curve) if self.is_drawn(&drawn, &start, &curve) => {}
                     Ok(curve) => {
                         let line = self.line(&curve);
-                        drawn.push(Drawn {
+                        drawn.push(CurveLine {
                             observable: start.observable,
                             kind: start.kind,
                             line,
@@ -118,7 +118,7 @@ impl Tracer<'_> {
         &self,
         branches: &mut Vec<CurveStart>,
         tried: &mut Vec<CurveStart>,
-        drawn: &[Drawn],
+        drawn: &[CurveLine],
     ) -> Option<CurveStart> {
         branches.retain(|start| {
             let at = self.maker.plane.place(start.values);
@@ -163,7 +163,7 @@ impl Tracer<'_> {
 
     /// Whether a curve that was followed from a crossing is one that is drawn already: beyond the end of a curve its
     /// crossings are not explained by it.
-    fn is_drawn(&self, drawn: &[Drawn], start: &Crossing, curve: &Curve) -> bool {
+    fn is_drawn(&self, drawn: &[CurveLine], start: &Crossing, curve: &Curve) -> bool {
         let begins = curve.points.get(curve.start);
         let at = begins.map(|point| self.maker.plane.place(point.values));
         let mut drawn = drawn.iter();
@@ -195,7 +195,7 @@ impl Tracer<'_> {
     /// Changes without a curve, one an observable and reason.
     fn without_curve(
         &self,
-        drawn: &[Drawn],
+        drawn: &[CurveLine],
         open: &[Crossing],
         failures: &[(Crossing, String)],
         blurred: &[Blurred],

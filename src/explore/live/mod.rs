@@ -73,7 +73,7 @@ enum Stop {
 }
 
 #[derive(Debug, Serialize)]
-struct Told<'a> {
+struct LivePage<'a> {
     live: bool,
     /// Axes of a state.
     dimension: usize,
@@ -127,7 +127,7 @@ impl Live {
             let axes = sweep.problem.axes_of(observable).into_iter();
             axes.map(|axis| axis.edges().to_vec()).collect()
         };
-        let told = Told {
+        let told = LivePage {
             live: true,
             dimension: sweep.problem.space().dimension(),
             scene: &Scene::new(sweep, &[]),

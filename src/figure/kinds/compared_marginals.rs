@@ -51,7 +51,7 @@ pub(super) fn view_of(method: Method, estimated: &EstimatedDensity) -> View<'_> 
 }
 
 /// A panel laid out.
-struct Laid<'a> {
+struct MarginalPanel<'a> {
     value: &'a ComparedValue,
     observable: Observable,
     axis: usize,
@@ -136,7 +136,7 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     let values: Vec<&ComparedValue> = comparison.values.iter().filter(has_density).collect();
     let (count, share) = (values.len(), print.share(values.len()));
     let before = share.start * watched.len();
-    let mut all: Vec<Laid<'_>> = Vec::new();
+    let mut all: Vec<MarginalPanel<'_>> = Vec::new();
     for &value in &values[share] {
         for &observable in &watched {
             all.extend(lay_out((comparison, print), value, observable));
@@ -202,7 +202,7 @@ fn lay_out<'a>(
     (comparison, print): (&'a Comparison, &Print<'_>),
     value: &'a ComparedValue,
     observable: Observable,
-) -> Option<Laid<'a>> {
+) -> Option<MarginalPanel<'a>> {
     let Observable::Marginal(axis) = observable else {
         return None;
     };
@@ -218,7 +218,7 @@ fn lay_out<'a>(
         return None;
     }
     let title = names::density(&comparison.subject.family, observable);
-    Some(Laid {
+    Some(MarginalPanel {
         value,
         observable,
         axis,
@@ -242,7 +242,13 @@ pub(super) fn densities(
         .filter_map(move |method| Some((method, value.density(method, observable)?)))
 }
 
-fn draw_panel(page: &Page, laid: &Laid<'_>, rect: Rectangle, labels: bool, family: &Family) {
+fn draw_panel(
+    page: &Page,
+    laid: &MarginalPanel<'_>,
+    rect: Rectangle,
+    labels: bool,
+    family: &Family,
+) {
     let title = names::axis(family, laid.axis);
     let across = Scale::horizontal(page.look(), laid.window, rect.width, &title);
     let panel = page.panel(rect, laid.window, laid.up.range);

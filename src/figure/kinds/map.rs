@@ -175,9 +175,9 @@ impl Scene<'_> {
     }
 
     /// Where each region's words stand, on the page, with the words; `None` where they have no room.
-    fn word_places(&self, ground: &Ground, rect: Rectangle) -> Vec<Placed<'_>> {
+    fn word_places(&self, ground: &Ground, rect: Rectangle) -> Vec<RegionText<'_>> {
         let room = Room::new(&ground.picture);
-        let mut places: Vec<Placed<'_>> = Vec::new();
+        let mut places: Vec<RegionText<'_>> = Vec::new();
         for (number, region) in ground.picture.regions.iter().enumerate() {
             let text = words(region.signature);
             let wide = letters::text_width(self.look, &symbols::plain(&text), TICK_TEXT, false);
@@ -192,7 +192,7 @@ impl Scene<'_> {
                 .sample(ground, number)
                 .and_then(|sample| Some((find(both)?, Some(sample))));
             let best = with.or_else(|| Some((find(half)?, None)));
-            places.extend(best.map(|([column, row], sample)| Placed {
+            places.extend(best.map(|([column, row], sample)| RegionText {
                 at: (
                     rect.left + (column as f64 + 0.5) / FINE,
                     rect.bottom() - (row as f64 + 0.5) / FINE,
@@ -216,7 +216,12 @@ impl Scene<'_> {
         })
     }
 
-    fn legend(&self, ground: Option<&Ground>, places: &[Placed<'_>], rect: Rectangle) -> Legend {
+    fn legend(
+        &self,
+        ground: Option<&Ground>,
+        places: &[RegionText<'_>],
+        rect: Rectangle,
+    ) -> Legend {
         let mut entries = entries(self.curves.iter().copied(), self.family, rect);
         entries.extend(self.crossed.entries());
         if let Some(ground) = ground {
@@ -303,14 +308,14 @@ impl Scene<'_> {
 }
 
 /// Words in a region, with the density of one of its states where there is room.
-struct Placed<'m> {
+struct RegionText<'m> {
     /// The middle of both, on the page.
     at: (f64, f64),
     words: String,
     sample: Option<&'m RegionSample>,
 }
 
-impl Placed<'_> {
+impl RegionText<'_> {
     /// The words above, the density below, both together in the middle.
     fn draw(&self, page: &Page, look: &Look) {
         let (x, y) = self.at;

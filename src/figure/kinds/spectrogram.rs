@@ -2,7 +2,9 @@
 //! the highest maximum as a line, and the values at which the shape of the spectrum changes.
 
 use super::diagram::{column_edges, hatch_column};
-use super::spectrum::{Asked, FREQUENCY, asked, frequencies, of_point, power_title, powers};
+use super::spectrum::{
+    FREQUENCY, SpectrumOf, frequencies, of_point, power_title, powers, spectra_of,
+};
 use super::{Drawn, Kind, Sketch, Sweep};
 use crate::continuation::measure::SPECTRAL_PEAK;
 use crate::continuation::{LevelCrossing, SweepResult};
@@ -29,15 +31,15 @@ pub(super) const KIND: Kind = Kind {
     is_usual: true,
     sketches: |sweep: &Sweep<'_>| {
         let result = sweep.result;
-        let sketch = |one: Asked| {
+        let sketch = |one: SpectrumOf| {
             let file = format!("spectrogram_{}", one.file);
             Sketch::new(file, move |print| draw(result, &one, print))
         };
-        asked(sweep.family()).into_iter().map(sketch).collect()
+        spectra_of(sweep.family()).into_iter().map(sketch).collect()
     },
 };
 
-fn draw(result: &SweepResult, asked: &Asked, print: &Print<'_>) -> Drawn {
+fn draw(result: &SweepResult, asked: &SpectrumOf, print: &Print<'_>) -> Drawn {
     let (family, points) = (&result.subject.family, &result.points);
     // Power is read over decades, whatever densities have.
     let look = &Look {
@@ -141,7 +143,7 @@ fn beside(places: &[f64], value: f64) -> (usize, f64) {
 /// Frequencies of the highest maximum along the sweep, in runs of neighbouring values that have one.
 fn peaks(
     result: &SweepResult,
-    asked: &Asked,
+    asked: &SpectrumOf,
     is_logarithmic: bool,
     (from, to): (f64, f64),
 ) -> Vec<Vec<(f64, f64)>> {
@@ -162,7 +164,7 @@ fn peaks(
 }
 
 /// Values at which the shape of the spectrum changes, in words.
-fn spectral_rows(result: &SweepResult, asked: &Asked) -> String {
+fn spectral_rows(result: &SweepResult, asked: &SpectrumOf) -> String {
     let family = &result.subject.family;
     let own = |crossing: &&LevelCrossing| crossing.spectral().is_some_and(|(_, of)| of == asked.of);
     let rows = result.labels.iter().filter_map(|row| {
@@ -178,7 +180,7 @@ fn spectral_rows(result: &SweepResult, asked: &Asked) -> String {
     rows.collect::<Vec<_>>().join(" ")
 }
 
-fn rows_of(result: &SweepResult, asked: &Asked) -> String {
+fn rows_of(result: &SweepResult, asked: &SpectrumOf) -> String {
     let family = &result.subject.family;
     let frequencies = family
         .questions

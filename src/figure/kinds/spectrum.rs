@@ -28,7 +28,7 @@ pub(super) const KIND: Kind = Kind {
 fn sketches<'a>(sweep: &Sweep<'a>) -> Vec<Sketch<'a>> {
     let mut all = Vec::new();
     for name in ["spectrum", "correlation"] {
-        for one in asked(sweep.family()) {
+        for one in spectra_of(sweep.family()) {
             let (result, chosen) = (sweep.result, sweep.chosen.clone());
             let file = format!("{name}_{}", one.file);
             all.push(Sketch::new(file, move |print| match name {
@@ -41,7 +41,7 @@ fn sketches<'a>(sweep: &Sweep<'a>) -> Vec<Sketch<'a>> {
 }
 
 /// A spectrum that is asked for.
-pub(super) struct Asked {
+pub(super) struct SpectrumOf {
     /// Its name in tables.
     pub(super) of: String,
     /// The same as a part of a file's name.
@@ -52,7 +52,7 @@ pub(super) struct Asked {
 }
 
 /// The spectra that a family asks for.
-pub(super) fn asked(family: &Family) -> Vec<Asked> {
+pub(super) fn spectra_of(family: &Family) -> Vec<SpectrumOf> {
     let Some(question) = &family.questions.spectrum else {
         return Vec::new();
     };
@@ -64,7 +64,7 @@ pub(super) fn asked(family: &Family) -> Vec<Asked> {
         } else {
             format!("{}, {}", symbol(one), symbol(other))
         };
-        Asked {
+        SpectrumOf {
             file: of.replace(", ", "_"),
             of,
             title,
@@ -75,7 +75,7 @@ pub(super) fn asked(family: &Family) -> Vec<Asked> {
 }
 
 /// What a point has of a spectrum.
-pub(super) fn of_point<'a>(point: &'a Point, asked: &Asked) -> Option<&'a Fluctuations> {
+pub(super) fn of_point<'a>(point: &'a Point, asked: &SpectrumOf) -> Option<&'a Fluctuations> {
     point
         .report
         .fluctuations
@@ -106,7 +106,7 @@ pub(super) fn frequencies(question: &SpectrumQuestion) -> (bool, Vec<f64>) {
 pub(super) const FREQUENCY: &str = "angular frequency $ω$";
 
 /// Title of an axis of power.
-pub(super) fn power_title(asked: &Asked) -> String {
+pub(super) fn power_title(asked: &SpectrumOf) -> String {
     match asked.is_cross {
         false => format!("power of {}", asked.title),
         true => format!("cross power of {}", asked.title),
@@ -116,7 +116,7 @@ pub(super) fn power_title(asked: &Asked) -> String {
 fn draw_spectrum(
     result: &SweepResult,
     chosen: &[&Point],
-    asked: &Asked,
+    asked: &SpectrumOf,
     print: &Print<'_>,
 ) -> Drawn {
     let question = result.subject.family.questions.spectrum.as_ref()?;
@@ -163,7 +163,7 @@ fn draw_spectrum(
 fn draw_correlation(
     result: &SweepResult,
     chosen: &[&Point],
-    asked: &Asked,
+    asked: &SpectrumOf,
     print: &Print<'_>,
 ) -> Drawn {
     let (step, _) = result.subject.family.questions.spectrum.as_ref()?.lags();

@@ -64,7 +64,7 @@ fn stroke(kind: Kind, status: BifurcationStatus) -> Stroke {
 }
 
 /// A bifurcation's label with its place above the map.
-struct Placed<'a> {
+struct PlacedLabel<'a> {
     name: &'a str,
     kind: Kind,
     status: BifurcationStatus,
@@ -81,7 +81,7 @@ struct Placed<'a> {
 
 /// The bifurcations of a sweep, those of the diagram's own observable and the others.
 pub(crate) struct Labels<'a> {
-    placed: Vec<Placed<'a>>,
+    placed: Vec<PlacedLabel<'a>>,
     rows: usize,
     range: (f64, f64),
 }
@@ -148,7 +148,7 @@ impl<'a> Labels<'a> {
                 rows.push(Vec::new());
             }
             rows[row].push((from, to));
-            placed.push(Placed {
+            placed.push(PlacedLabel {
                 name,
                 kind,
                 status,
@@ -216,7 +216,7 @@ impl<'a> Labels<'a> {
     pub(crate) fn draw_texts(&self, page: &Page, map: Rectangle) {
         let middle_of = |row: usize| map.top - GAP - (row as f64 + 0.5) * ROW;
         // Where a lower label stands in the way nothing but dots of a leader would be seen.
-        let is_free = |label: &&Placed<'_>| {
+        let is_free = |label: &&PlacedLabel<'_>| {
             let mut lower = self.placed.iter().filter(|one| one.row < label.row);
             lower.all(|one| (one.middle - label.middle).abs() > one.half + 1.0)
         };

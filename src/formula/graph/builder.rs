@@ -113,12 +113,12 @@ impl<'a> Builder<'a> {
             Binary::Divide => self.divide(a, b),
             Binary::Power => self.power(a, b),
             Binary::Min | Binary::Max if a == b => a,
-            _ => self.commuted(operation, a, b),
+            _ => self.commute(operation, a, b),
         }
     }
 
     /// The node as it is, with its operands in the order in which it was first written.
-    fn commuted(&mut self, operation: Binary, a: Expression, b: Expression) -> Expression {
+    fn commute(&mut self, operation: Binary, a: Expression, b: Expression) -> Expression {
         let exchanged = operation
             .is_commutative()
             .then(|| self.graph.find(Node::Binary(operation, b, a)))
@@ -144,9 +144,9 @@ impl<'a> Builder<'a> {
             (Some(left), None) if is_negative_zero(left) => b,
             (_, Some(right)) if right < 0.0 => {
                 let positive = self.constant(-right);
-                self.commuted(Binary::Subtract, a, positive)
+                self.commute(Binary::Subtract, a, positive)
             }
-            _ => self.commuted(Binary::Add, a, b),
+            _ => self.commute(Binary::Add, a, b),
         }
     }
 
@@ -162,9 +162,9 @@ impl<'a> Builder<'a> {
             (None, Some(right)) if right == 0.0 && !is_negative_zero(right) => a,
             (_, Some(right)) if right < 0.0 => {
                 let positive = self.constant(-right);
-                self.commuted(Binary::Add, a, positive)
+                self.commute(Binary::Add, a, positive)
             }
-            _ => self.commuted(Binary::Subtract, a, b),
+            _ => self.commute(Binary::Subtract, a, b),
         }
     }
 
@@ -196,7 +196,7 @@ impl<'a> Builder<'a> {
                 return self.power(base, three);
             }
         }
-        self.commuted(Binary::Multiply, a, b)
+        self.commute(Binary::Multiply, a, b)
     }
 
     /// a/b.
@@ -210,7 +210,7 @@ impl<'a> Builder<'a> {
                 self.binary(Binary::Divide, a, b)
             }
             (None, Some(1.0)) => a,
-            _ => self.commuted(Binary::Divide, a, b),
+            _ => self.commute(Binary::Divide, a, b),
         }
     }
 

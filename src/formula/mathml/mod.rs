@@ -4,13 +4,13 @@
 //! formula as typed ── syntax tree ──► Laid (how tightly it holds together, its sign) ──► Element
 //! ```
 
-mod laid;
+mod part;
 mod typed;
 
 use std::fmt;
 
 use super::language::{FormulaError, parse};
-use laid::{Fence, Laid};
+use part::{Fence, Part};
 
 /// Longest text that is laid out, in bytes; what is longer is shown as it was written.
 const LONGEST: usize = 4096;
@@ -51,7 +51,7 @@ pub enum Content {
 /// # Errors
 /// What is wrong with it, and where.
 pub fn formula(text: &str) -> Result<Element, FormulaError> {
-    typed::lay_out(text, &parse(text)?).map(Laid::element)
+    typed::lay_out(text, &parse(text)?).map(Part::element)
 }
 
 /// The layout of `left = right + amplitude noise(t) + …`, an equation with formulas as they are typed.
@@ -69,7 +69,7 @@ pub(crate) fn equation(
     let of = |text: &str| typed::lay_out(text, &parse(text)?);
     let mut sum = of(right)?;
     for (amplitude, noise) in noises {
-        sum = sum.plus(of(amplitude)?.times(at(noise, Laid::name("t"))));
+        sum = sum.plus(of(amplitude)?.times(at(noise, Part::name("t"))));
     }
     let name = left.trim_end_matches('\'');
     let left = of(name)?.derivative(left.len() - name.len());
@@ -83,28 +83,28 @@ pub(crate) fn correlation(
     lag: &str,
     words: &str,
 ) -> Element {
-    let time = || Laid::name("t");
-    let product = at(one, time()).times(at(other, time().plus(Laid::name(lag))));
-    let mean = Laid::name("E").apply(product.between(Fence::Brackets));
-    let mut delta = at("δ", Laid::name(lag));
+    let time = || Part::name("t");
+    let product = at(one, time()).times(at(other, time().plus(Part::name(lag))));
+    let mean = Part::name("E").apply(product.between(Fence::Brackets));
+    let mut delta = at("δ", Part::name(lag));
     if !factor.is_empty() {
-        delta = Laid::name(factor).times(delta);
+        delta = Part::name(factor).times(delta);
     }
     let whole = mean.relate("=", delta);
     if words.is_empty() {
         return whole.element();
     }
-    whole.beside(Laid::words(words)).element()
+    whole.beside(Part::words(words)).element()
 }
 
 /// Text that is no formula.
 pub(crate) fn words(text: &str) -> Element {
-    Laid::words(text).element()
+    Part::words(text).element()
 }
 
 /// A function of time.
-fn at(name: &str, time: Laid) -> Laid {
-    Laid::name(name).call(vec![time])
+fn at(name: &str, time: Part) -> Part {
+    Part::name(name).call(vec![time])
 }
 
 impl Element {

@@ -1,17 +1,17 @@
 //! The layout of a formula from its syntax tree.
 
 use super::LONGEST;
-use super::laid::{Fence, Laid};
+use super::part::{Fence, Part};
 use crate::formula::language::{FormulaError, Function, Operator, Syntax, SyntaxKind};
 
 /// Lays a parsed formula out; one that is very long or deep stays the text that it is.
-pub(super) fn lay_out(text: &str, syntax: &Syntax) -> Result<Laid, FormulaError> {
-    let as_it_is = || Laid::words(text.trim());
+pub(super) fn lay_out(text: &str, syntax: &Syntax) -> Result<Part, FormulaError> {
+    let as_it_is = || Part::words(text.trim());
     if text.len() > LONGEST {
         return Ok(as_it_is());
     }
     // Children stand before their parents, and each has one parent that takes it.
-    let mut made: Vec<Option<Laid>> = Vec::with_capacity(syntax.nodes.len());
+    let mut made: Vec<Option<Part>> = Vec::with_capacity(syntax.nodes.len());
     for node in &syntax.nodes {
         let part = lay_out_node(text, syntax, node.kind, &mut made);
         let Some(part) = part.filter(|part| !part.is_too_deep()) else {
@@ -26,12 +26,12 @@ fn lay_out_node(
     text: &str,
     syntax: &Syntax,
     kind: SyntaxKind,
-    made: &mut [Option<Laid>],
-) -> Option<Laid> {
+    made: &mut [Option<Part>],
+) -> Option<Part> {
     let mut of = |node: u32| made.get_mut(node as usize).and_then(Option::take);
     Some(match kind {
-        SyntaxKind::Number(value) => Laid::number(value),
-        SyntaxKind::Name(start, end) => Laid::name(text.get(start as usize..end as usize)?),
+        SyntaxKind::Number(value) => Part::number(value),
+        SyntaxKind::Name(start, end) => Part::name(text.get(start as usize..end as usize)?),
         SyntaxKind::Negate(inner) => of(inner)?.negated(),
         SyntaxKind::Binary(operator, left, right) => {
             let (left, right) = (of(left)?, of(right)?);
@@ -39,13 +39,13 @@ fn lay_out_node(
         }
         SyntaxKind::Call(function, first, count) => {
             let arguments = syntax.arguments_of(first, count).iter();
-            let arguments: Option<Vec<Laid>> = arguments.map(|&node| of(node)).collect();
+            let arguments: Option<Vec<Part>> = arguments.map(|&node| of(node)).collect();
             call(function, arguments?)?
         }
     })
 }
 
-fn binary(operator: Operator, left: Laid, right: Laid) -> Laid {
+fn binary(operator: Operator, left: Part, right: Part) -> Part {
     match operator {
         Operator::Add => left.plus(right),
         Operator::Subtract => left.minus(right),
@@ -61,15 +61,15 @@ fn binary(operator: Operator, left: Laid, right: Laid) -> Laid {
     }
 }
 
-fn call(function: Function, arguments: Vec<Laid>) -> Option<Laid> {
+fn call(function: Function, arguments: Vec<Part>) -> Option<Part> {
     let name = match function {
         Function::If => {
-            let [condition, yes, no] = <[Laid; 3]>::try_from(arguments).ok()?;
-            return Some(Laid::cases(condition, yes, no));
+            let [condition, yes, no] = <[Part; 3]>::try_from(arguments).ok()?;
+            return Some(Part::cases(condition, yes, no));
         }
         Function::Pow | Function::Hypot => {
-            let [a, b] = <[Laid; 2]>::try_from(arguments).ok()?;
-            let squared = |one: Laid| one.raise(Laid::number(2.0));
+            let [a, b] = <[Part; 2]>::try_from(arguments).ok()?;
+            let squared = |one: Part| one.raise(Part::number(2.0));
             return Some(match function {
                 Function::Pow => a.raise(b),
                 _ => squared(a).plus(squared(b)).root(None),
@@ -87,9 +87,9 @@ fn call(function: Function, arguments: Vec<Laid>) -> Option<Laid> {
         Function::Atan => "arctan",
         other => other.name(),
     };
-    Some(Laid::name(name).call(arguments))
+    Some(Part::name(name).call(arguments))
 }
 
-fn sole(arguments: Vec<Laid>) -> Option<Laid> {
+fn sole(arguments: Vec<Part>) -> Option<Part> {
     arguments.into_iter().next()
 }

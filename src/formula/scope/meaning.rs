@@ -109,7 +109,7 @@ impl Meanings {
             name: name.to_owned(),
             nearest: all.nearest(name),
             product: known.product(name),
-            known: self.known_in_words(),
+            known: self.names_in_words(),
         };
         FormulaError::new(span, fault)
     }
@@ -125,7 +125,7 @@ impl Meanings {
         states.chain(parameters).chain(definitions)
     }
 
-    fn known_in_words(&self) -> String {
+    fn names_in_words(&self) -> String {
         let definitions: Vec<String> = self
             .symbols
             .definitions()

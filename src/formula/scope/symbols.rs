@@ -207,7 +207,7 @@ impl Symbols {
             });
         }
         let canonical = canonical_name(name);
-        if let Some(meaning) = reserved(&canonical) {
+        if let Some(meaning) = reservation(&canonical) {
             return Err(SymbolError::Reserved {
                 name: name.to_owned(),
                 meaning,
@@ -233,7 +233,7 @@ impl Symbols {
 pub(super) const TIME: &str = "t";
 
 /// Names that cannot be given. The constants `pi` and `e` can.
-fn reserved(canonical: &str) -> Option<&'static str> {
+fn reservation(canonical: &str) -> Option<&'static str> {
     if canonical == TIME {
         Some("time")
     } else if canonical == "if" {

@@ -17,7 +17,7 @@ pub(super) fn plane(sweep: &Sweep) -> Result<Option<Plane>, Report> {
             (curve.parameter.as_str(), curve.from, curve.to),
         )
     });
-    plane.transpose().map_err(refused)
+    plane.transpose().map_err(refusal)
 }
 
 /// Refuses the curves that a sweep file asks for before its sweep is run.
@@ -117,7 +117,7 @@ pub(super) fn which_parameter(sweep: &Sweep) -> Report {
         .into()
 }
 
-pub(super) fn refused(error: CurveError) -> Report {
+pub(super) fn refusal(error: CurveError) -> Report {
     let report = Diagnostic::new(error.to_string());
     let report = match error {
         CurveError::TooFewSamples => report.remedy(

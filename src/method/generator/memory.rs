@@ -18,7 +18,7 @@ use crate::stationary::generator::SolverMemory;
 
 /// What a solve leaves in its session.
 #[derive(Serialize, Deserialize)]
-struct Left<Trail> {
+struct SessionMemory<Trail> {
     stand: Stand,
     solver: SolverMemory,
     trail: Option<Trail>,
@@ -27,7 +27,7 @@ struct Left<Trail> {
 /// The solver as it is now, and the trail that the last solve has left.
 pub(super) fn write(session: &GeneratorSession) -> Vec<u8> {
     let left = session.trails.newest().filter(|_| session.has_left);
-    to_bytes(&Left {
+    to_bytes(&SessionMemory {
         stand: session.stand,
         solver: session.solver.memory(),
         trail: left.map(|(_, trail)| trail.news()),
@@ -42,7 +42,7 @@ pub(super) fn recall(
     let mut known: Vec<Arc<TrailPoint>> = Vec::new();
     let mut last = None;
     for (value, bytes) in left.iter().filter(|(_, bytes)| !bytes.is_empty()) {
-        let left: Left<News<TrailPoint, Relaxation>> = from_bytes(bytes)?;
+        let left: SessionMemory<News<TrailPoint, Relaxation>> = from_bytes(bytes)?;
         if let Some(news) = left.trail {
             let trail = Trail::of_news(news, &known).ok_or(NotWhatWasWritten)?;
             check(session, &trail)?;

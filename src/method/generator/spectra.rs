@@ -91,7 +91,7 @@ pub(super) fn add_spectra(
         let of = question.name(pair);
         if let Some(features) = &spectrum.features {
             report.measures.extend(measures_of_spectrum(&of, features));
-            report.findings.extend(known_up_to(&spectrum, &frequencies));
+            report.findings.extend(cut_off(&spectrum, &frequencies));
         }
         report
             .fluctuations
@@ -101,7 +101,7 @@ pub(super) fn add_spectra(
 }
 
 /// A finding where a power spectrum is not known from a frequency on.
-fn known_up_to(spectrum: &Spectrum, frequencies: &[f64]) -> Option<Finding> {
+fn cut_off(spectrum: &Spectrum, frequencies: &[f64]) -> Option<Finding> {
     let mut powers = spectrum.real.iter().zip(frequencies);
     // At zero the power of a velocity is none.
     let (_, &frequency) = powers.find(|((power, error), frequency)| {

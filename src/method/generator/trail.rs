@@ -128,16 +128,16 @@ impl Trail {
 
     /// Unknowns expected at a value; `None` without any point.
     pub(super) fn mass_at(&self, value: f64) -> Option<Vec<f64>> {
-        self.extrapolated(value, POINTS, |point| &point.mass)
+        self.extrapolation(value, POINTS, |point| &point.mass)
     }
 
     /// Difference between the schemes expected at a value; `None` without any point.
     pub(super) fn difference_at(&self, value: f64) -> Option<Vec<f64>> {
-        self.extrapolated(value, ROUGH_POINTS, |point| &point.difference)
+        self.extrapolation(value, ROUGH_POINTS, |point| &point.difference)
     }
 
     /// Newton's form of the polynomial through the points nearest to a value, as far as its terms fall.
-    fn extrapolated(
+    fn extrapolation(
         &self,
         value: f64,
         most: usize,

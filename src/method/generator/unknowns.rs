@@ -76,7 +76,7 @@ pub(super) fn with_walls(
     (unknowns, weights): (&[f64], &[f64]),
     relaxation: Option<f64>,
 ) -> Vec<EstimatedMoments> {
-    let left = left_of_balances(&all, (system, space), weights);
+    let left = imbalances(&all, (system, space), weights);
     let pairs = all.into_iter().zip(moments_of(space, unknowns)).zip(left);
     let wider = pairs.enumerate().map(|(axis, ((own, plain), left))| {
         let is_walled = system.facts().reflecting.contains_key(&axis);
@@ -96,13 +96,13 @@ pub(super) fn with_walls(
 
 /// What is left of the balance of an axis, and how fast its coordinate moves over the range that it takes.
 #[derive(Default, Clone, Copy)]
-struct Left {
+struct Imbalance {
     mean: f64,
     square: f64,
     rate: f64,
 }
 
-impl Left {
+impl Imbalance {
     /// Errors of mean and variance, for a relaxation time that is known or else for the axis's own.
     fn over(self, relaxation: Option<f64>) -> [f64; 2] {
         let time = relaxation.unwrap_or(1.0 / self.rate);
@@ -111,13 +111,13 @@ impl Left {
 }
 
 /// ⟨f⟩ and ⟨2 (y - m) f + b²⟩ of every axis y of drift f and noise b, with the rate √(⟨f²⟩/⟨(y - m)²⟩).
-fn left_of_balances(
+fn imbalances(
     all: &[EstimatedMoments],
     (system, space): (&dyn System, &CellSpace),
     weights: &[f64],
-) -> Vec<Left> {
+) -> Vec<Imbalance> {
     let total: f64 = weights.iter().sum();
-    let mut left = vec![Left::default(); space.dimension()];
+    let mut left = vec![Imbalance::default(); space.dimension()];
     for (cell, weight) in weights.iter().enumerate() {
         let (state, share) = (space.node(cell), weight / total);
         let drift = system.drift_at(0.0, &state);

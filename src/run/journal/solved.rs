@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::kept::Kept;
 use super::{Journal, Key};
 use crate::continuation::{Point, Subject};
-use crate::density::{EstimatedDensity, Observable, laid_out};
+use crate::density::{EstimatedDensity, Observable, layout_axis};
 use crate::run::RunError;
 use crate::space::{Axis, CellSpace};
 use crate::system::Family;
@@ -19,14 +19,14 @@ type Described = (String, Vec<Option<String>>);
 /// The densities of a point.
 #[derive(Debug, Serialize, Deserialize)]
 struct PointRecord {
-    place: Place,
+    place: RecordPlace,
     /// In the order of the densities.
     densities: Vec<Described>,
 }
 
 /// Where the solve of a point stands.
 #[derive(Debug, Serialize, Deserialize)]
-enum Place {
+enum RecordPlace {
     /// In the record of this key.
     At(Key),
     /// Here, since a shard has solved it.
@@ -57,7 +57,7 @@ impl Journal {
         kept: &Kept,
     ) -> Result<(), RunError> {
         let densities = of_densities(family, kept.densities());
-        let place = Place::At(key);
+        let place = RecordPlace::At(key);
         self.write(Key::of_point(value), &PointRecord { place, densities })
     }
 
@@ -70,7 +70,7 @@ impl Journal {
             return Ok(());
         }
         let densities = of_densities(family, &point.densities);
-        let place = Place::Here(Kept::of_point(point));
+        let place = RecordPlace::Here(Kept::of_point(point));
         self.write(
             Key::of_point(point.value),
             &PointRecord { place, densities },
@@ -99,14 +99,14 @@ impl Journal {
         };
         let broken = || RunError::Journal { path: self.path() };
         let kept = match record.place {
-            Place::At(key) => self.get(key)?.ok_or_else(broken)?,
-            Place::Here(kept) => kept,
+            RecordPlace::At(key) => self.get(key)?.ok_or_else(broken)?,
+            RecordPlace::Here(kept) => kept,
         };
         if !kept.is_sound() || kept.densities().len() != record.densities.len() {
             return Err(broken());
         }
         let family = &subject.family;
-        let axis_of = |number: usize| space.axes().iter().chain(bins).nth(number).map(laid_out);
+        let axis_of = |number: usize| space.axes().iter().chain(bins).nth(number).map(layout_axis);
         let wanted = subject.observables.iter();
         let found = wanted.map(|&observable| {
             let (name, formulas) = described(family, observable);

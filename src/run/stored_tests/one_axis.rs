@@ -31,7 +31,7 @@ fn solved(source: &GeneratorSource, values: &[f64]) -> Vec<Point> {
 }
 
 /// Every number of a density bit for bit: numbers are printed with all digits that tell them apart.
-fn told(density: &EstimatedDensity) -> String {
+fn words(density: &EstimatedDensity) -> String {
     format!("{density:?}")
 }
 
@@ -69,7 +69,7 @@ fn values_by_quadrature_and_on_cells_come_back_as_they_were_solved() {
         assert_eq!(found.len(), points.len());
         for point in &points {
             let same = found.iter().find(|one| one.value == point.value).unwrap();
-            assert_eq!(told(&same.densities[0]), told(&point.densities[0]));
+            assert_eq!(words(&same.densities[0]), words(&point.densities[0]));
         }
     }
 }

@@ -260,13 +260,13 @@ pub(super) fn estimate_of(
 
 /// M⁻¹ for M = Q (or its stand-in) with the row and column of one cell replaced by the identity's.
 pub(super) struct Preconditioner {
-    factors: Kept,
+    factors: AnyFactors,
     /// The cell held in the current factors.
     pub(super) held: usize,
 }
 
 /// What is kept of a matrix.
-enum Kept {
+enum AnyFactors {
     Whole(WholeFactors),
     Modes(Box<ModeFactors>),
     Harmonics(Box<HarmonicFactors>),
@@ -299,25 +299,25 @@ impl Preconditioner {
                 let factors = HarmonicFactors::new(layout, matrix, held, cancellation)?;
                 return Ok(Self {
                     held: factors.held,
-                    factors: Kept::Harmonics(Box::new(factors)),
+                    factors: AnyFactors::Harmonics(Box::new(factors)),
                 });
             }
             let factors = ModeFactors::new(layout, matrix, held, cancellation)?;
             return Ok(Self {
                 held: factors.held,
-                factors: Kept::Modes(Box::new(factors)),
+                factors: AnyFactors::Modes(Box::new(factors)),
             });
         }
         let old = old.and_then(|old| match old.factors {
-            Kept::Whole(factors) => Some(factors),
-            Kept::Modes(_) | Kept::Harmonics(_) => None,
+            AnyFactors::Whole(factors) => Some(factors),
+            AnyFactors::Modes(_) | AnyFactors::Harmonics(_) => None,
         });
         let grid = || grid(space, structure, method);
         let narrowed = method.is_narrow().then(|| narrow(space, matrix));
         let matrix = narrowed.as_ref().unwrap_or(matrix);
         let factors = WholeFactors::new(grid, method, (matrix, held), old, cancellation)?;
         Ok(Self {
-            factors: Kept::Whole(factors),
+            factors: AnyFactors::Whole(factors),
             held,
         })
     }
@@ -325,9 +325,9 @@ impl Preconditioner {
     /// M⁻¹ r for each r, zero at the held cell, in one pass through the factors. To the bit what each gives by itself.
     pub(super) fn apply<const R: usize>(&self, residuals: [&[f64]; R]) -> [Vec<f64>; R] {
         match &self.factors {
-            Kept::Whole(factors) => factors.apply(residuals, self.held),
-            Kept::Modes(factors) => factors.apply(residuals),
-            Kept::Harmonics(factors) => factors.apply(residuals),
+            AnyFactors::Whole(factors) => factors.apply(residuals, self.held),
+            AnyFactors::Modes(factors) => factors.apply(residuals),
+            AnyFactors::Harmonics(factors) => factors.apply(residuals),
         }
     }
 
@@ -340,18 +340,18 @@ impl Preconditioner {
     /// M⁻ᵀ r, zero at the held cell.
     pub(super) fn apply_transposed(&self, residual: &[f64]) -> Vec<f64> {
         match &self.factors {
-            Kept::Whole(factors) => factors.apply_transposed(residual, self.held),
-            Kept::Modes(factors) => factors.apply_transposed(residual),
-            Kept::Harmonics(factors) => factors.apply_transposed(residual),
+            AnyFactors::Whole(factors) => factors.apply_transposed(residual, self.held),
+            AnyFactors::Modes(factors) => factors.apply_transposed(residual),
+            AnyFactors::Harmonics(factors) => factors.apply_transposed(residual),
         }
     }
 
     /// Bytes of the factors.
     pub(super) fn factor_bytes(&self) -> u64 {
         match &self.factors {
-            Kept::Whole(factors) => factors.bytes(),
-            Kept::Modes(factors) => factors.bytes(),
-            Kept::Harmonics(factors) => factors.bytes(),
+            AnyFactors::Whole(factors) => factors.bytes(),
+            AnyFactors::Modes(factors) => factors.bytes(),
+            AnyFactors::Harmonics(factors) => factors.bytes(),
         }
     }
 }

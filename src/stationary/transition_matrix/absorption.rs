@@ -1,6 +1,6 @@
 //! Where mass ends when several classes hold some: shares of the initial mass.
 
-use super::chain::Checked;
+use super::chain::SoundMatrix;
 use super::classes::ClassShare;
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::space::CellSpace;
@@ -17,7 +17,7 @@ const TRANSIENT: usize = usize::MAX;
 /// Pushes `initial` (mass of each row, Σ = 1) until it is absorbed by the classes or the sink. Returns the
 /// classes with their shares, and the share of the sink.
 pub(super) fn shares(
-    matrix: &Checked<'_>,
+    matrix: &SoundMatrix<'_>,
     space: &CellSpace,
     classes: &[(f64, Vec<usize>)],
     initial: &[f64],
@@ -57,7 +57,12 @@ pub(super) fn shares(
 }
 
 /// One map step: the transient mass that is left, and in `flow` what the classes and, last, the sink absorb.
-fn step(matrix: &Checked<'_>, class_of: &[usize], transient: &[f64], flow: &mut [f64]) -> Vec<f64> {
+fn step(
+    matrix: &SoundMatrix<'_>,
+    class_of: &[usize],
+    transient: &[f64],
+    flow: &mut [f64],
+) -> Vec<f64> {
     flow.fill(0.0);
     if let Some(sink) = flow.last_mut() {
         let leaving = matrix.escape.iter().zip(transient);
@@ -88,7 +93,7 @@ fn share_out(left: f64, flow: &[f64], absorbed: &mut [f64]) {
 
 /// Size and place of a class.
 fn describe(
-    matrix: &Checked<'_>,
+    matrix: &SoundMatrix<'_>,
     space: &CellSpace,
     rows: &[usize],
     share: f64,

@@ -18,7 +18,7 @@ pub(super) const ROWS_A_TASK: usize = 2048;
 const COLUMN_TOLERANCE: f64 = 1e-9;
 
 /// A transition matrix that has passed its checks.
-pub(super) struct Checked<'a> {
+pub(super) struct SoundMatrix<'a> {
     starts: Cow<'a, [usize]>,
     columns: &'a [usize],
     values: &'a [f64],
@@ -30,7 +30,7 @@ pub(super) struct Checked<'a> {
     leaving: Vec<f64>,
 }
 
-impl<'a> Checked<'a> {
+impl<'a> SoundMatrix<'a> {
     /// Checks sizes, order of the cells (all below `n_cells`), signs and column sums.
     pub(super) fn new(
         matrix: &'a TransitionMatrix,
@@ -109,7 +109,7 @@ impl<'a> Checked<'a> {
 
     /// The chain on some of the rows, in the given order. What goes from them to other rows counts as
     /// leaving but is lost; pick a set that is only left through the sink.
-    pub(super) fn restricted(&self, order: &[usize]) -> Chain {
+    pub(super) fn restriction(&self, order: &[usize]) -> Chain {
         const ABSENT: u32 = u32::MAX;
         let mut place = vec![ABSENT; self.len()];
         for (state, &row) in order.iter().enumerate() {

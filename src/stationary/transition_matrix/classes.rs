@@ -13,7 +13,7 @@
 //!   most [`SIMILAR`] times the dominating one or at most [`SLOW`]. Others vanish while the first stands.
 
 use super::LARGEST_ESCAPE;
-use super::chain::Checked;
+use super::chain::SoundMatrix;
 use super::components::Components;
 use crate::cancellation::{Cancellation, Cancelled};
 
@@ -63,7 +63,7 @@ struct Candidate {
 
 /// Decides which cells carry the steady state.
 pub(super) fn carrier(
-    matrix: &Checked<'_>,
+    matrix: &SoundMatrix<'_>,
     cancellation: &Cancellation,
 ) -> Result<Carrier, Cancelled> {
     let components = Components::of(matrix);
@@ -114,7 +114,7 @@ pub(super) fn carrier(
 }
 
 /// Probability to leave its component in one step, for each cell.
-fn leak_of_cells(matrix: &Checked<'_>, components: &Components) -> Vec<f64> {
+fn leak_of_cells(matrix: &SoundMatrix<'_>, components: &Components) -> Vec<f64> {
     let mut leaks = matrix.escape.to_vec();
     for row in 0..matrix.len() {
         for (column, value) in matrix.row(row) {
@@ -148,7 +148,7 @@ fn candidates(components: &Components, leaks: &[f64]) -> Vec<Candidate> {
 /// Replaces bounds by estimates: power iteration on each candidate by itself, all in the same passes, each
 /// started from equal masses.
 fn refine(
-    matrix: &Checked<'_>,
+    matrix: &SoundMatrix<'_>,
     components: &Components,
     leaks: &[f64],
     candidates: &mut [Candidate],
@@ -216,7 +216,7 @@ struct Links {
 }
 
 impl Links {
-    fn of(matrix: &Checked<'_>, components: &Components) -> Self {
+    fn of(matrix: &SoundMatrix<'_>, components: &Components) -> Self {
         let mut forward = Vec::new();
         for row in 0..matrix.len() {
             let to = components.of[row];

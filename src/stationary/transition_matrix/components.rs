@@ -1,7 +1,7 @@
 //! Strongly connected components of a transition matrix by Tarjan's algorithm (SIAM J. Comput. 1, 1972),
 //! without recursion.
 
-use super::chain::Checked;
+use super::chain::SoundMatrix;
 
 /// Components of the graph with an edge j → i for every P_ij > 0, the sink left out.
 pub(super) struct Components {
@@ -27,7 +27,7 @@ struct Search {
 
 impl Components {
     /// Finds the components in time linear in the number of entries.
-    pub(super) fn of(matrix: &Checked<'_>) -> Self {
+    pub(super) fn of(matrix: &SoundMatrix<'_>) -> Self {
         let n = matrix.len();
         let mut search = Search {
             seen: vec![UNSEEN; n],
@@ -56,7 +56,7 @@ impl Search {
         self.open.push(cell as u32);
     }
 
-    fn from(&mut self, root: usize, matrix: &Checked<'_>, orders: &mut u32) {
+    fn from(&mut self, root: usize, matrix: &SoundMatrix<'_>, orders: &mut u32) {
         self.enter(root, orders);
         let mut path = vec![(root, matrix.row(root))];
         while let Some((cell, sources)) = path.last_mut() {

@@ -6,7 +6,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::chain::{Chain, Checked};
+use super::chain::{Chain, SoundMatrix};
 use super::{StationaryError, SteadyState};
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::sampling::TransitionMatrix;
@@ -52,13 +52,13 @@ pub fn second_eigenvalue(
     steady: &SteadyState,
     cancellation: &Cancellation,
 ) -> Result<SecondEigenvalue, StationaryError> {
-    let checked = Checked::new(matrix, steady.mass.len())?;
+    let checked = SoundMatrix::new(matrix, steady.mass.len())?;
     let mass_of = |row: &usize| steady.mass[checked.cells[*row]];
     let rows: Vec<usize> = (0..checked.len())
         .filter(|row| mass_of(row) > 0.0)
         .collect();
     let mass: Vec<f64> = rows.iter().map(mass_of).collect();
-    let chain = checked.restricted(&rows);
+    let chain = checked.restriction(&rows);
     let found = of_chain(&chain, &mass, cancellation)?;
     let ratio = found.modulus / (1.0 - chain.escaping(&mass));
     let relaxation_time = (ratio < 1.0).then(|| -matrix.map_step / ratio.ln());

@@ -1,6 +1,6 @@
 //! From a transition matrix to its steady state: class, solver, masses on the whole cell space.
 
-use super::chain::{Checked, normalise};
+use super::chain::{SoundMatrix, normalise};
 use super::classes::{self, Carrier};
 use super::hierarchy::morton;
 use super::multilevel::{self, Iterate};
@@ -38,7 +38,7 @@ pub fn solve(
     if guess.is_some_and(|guess| guess.len() != cells || !guess.iter().all(is_mass)) {
         return Err(StationaryError::Guess { cells });
     }
-    let checked = Checked::new(matrix, cells)?;
+    let checked = SoundMatrix::new(matrix, cells)?;
     let cancellation = &options.cancellation;
     match classes::carrier(&checked, cancellation)? {
         Carrier::None(escape_per_step) => Ok(Outcome::NoneInside { escape_per_step }),
@@ -54,7 +54,12 @@ pub fn solve(
 }
 
 /// Masses of the given rows to start from, Σ = 1, none below `floor` times the mean.
-fn initial(matrix: &Checked<'_>, rows: &[usize], guess: Option<&[f64]>, floor: f64) -> Vec<f64> {
+fn initial(
+    matrix: &SoundMatrix<'_>,
+    rows: &[usize],
+    guess: Option<&[f64]>,
+    floor: f64,
+) -> Vec<f64> {
     let mean = 1.0 / rows.len() as f64;
     let mut mass = vec![mean; rows.len()];
     if let Some(guess) = guess {
@@ -74,7 +79,7 @@ fn initial(matrix: &Checked<'_>, rows: &[usize], guess: Option<&[f64]>, floor: f
 
 /// Solves on the rows that carry the steady state.
 fn solve_on(
-    matrix: &Checked<'_>,
+    matrix: &SoundMatrix<'_>,
     space: &CellSpace,
     rows: Vec<usize>,
     guess: Option<&[f64]>,
@@ -86,7 +91,7 @@ fn solve_on(
         .collect();
     placed.sort_unstable();
     let (keys, rows): (Vec<u128>, Vec<usize>) = placed.into_iter().unzip();
-    let chain = matrix.restricted(&rows);
+    let chain = matrix.restriction(&rows);
     let start = initial(matrix, &rows, guess, FLOOR);
     let Iterate {
         mass,

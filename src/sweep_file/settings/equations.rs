@@ -1,7 +1,7 @@
 //! The model: a built-in one by its name, or the equations of the file, read with their places so that everything wrong
 //! with them is shown where it stands.
 
-mod told;
+mod faults;
 
 use std::sync::Arc;
 
@@ -14,9 +14,9 @@ use crate::sweep_file::reader::Reader;
 use crate::sweep_file::value::Value;
 use crate::system::{ColouredNoiseError, Model, ParameterDescription, TypedModel};
 
-pub(in crate::sweep_file) use told::value_place;
+pub(in crate::sweep_file) use faults::value_place;
 
-use told::{diagnostic, table_place};
+use faults::{diagnostic, table_place};
 
 /// Name of a model made of a file's equations, in messages and in stored runs.
 const NAME: &str = "equations";

@@ -11,7 +11,7 @@ use crate::system::{Family, Model, Quantity, QuantityError, quantities};
 
 /// A quantity as it was given.
 #[derive(Debug, Clone)]
-pub(super) struct Given {
+pub(super) struct GivenQuantity {
     pub(super) name: String,
     /// An axis at a phase of the forcing, which needs no formula.
     pub(super) at_phase: Option<Quantity>,
@@ -62,9 +62,9 @@ pub(in crate::sweep_file) fn quantity_name(text: &str) -> Option<&str> {
 pub(super) fn read_all(
     reader: &mut Reader<'_>,
     model: &Model,
-    given: &[Given],
+    given: &[GivenQuantity],
 ) -> Vec<Arc<Quantity>> {
-    let formulas: Vec<&Given> = given.iter().filter(|one| one.at_phase.is_none()).collect();
+    let formulas: Vec<&GivenQuantity> = given.iter().filter(|one| one.at_phase.is_none()).collect();
     let texts: Vec<(&str, Option<&str>)> = formulas
         .iter()
         .map(|one| {
@@ -93,7 +93,7 @@ pub(super) fn read_all(
     }
 }
 
-fn diagnostic(reader: &Reader<'_>, one: &Given, error: &QuantityError) -> Diagnostic {
+fn diagnostic(reader: &Reader<'_>, one: &GivenQuantity, error: &QuantityError) -> Diagnostic {
     let title = format!("quantity `{}`: {}", one.name, error.fault);
     let diagnostic = Diagnostic::new(title);
     let offset = one.formula.as_ref().map_or(0, |(_, offset)| *offset);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::AxisSettings;
 use super::equations::model_in_words;
 use super::modes_of::ModesOf;
-use super::quantities::{Given, read_all, split};
+use super::quantities::{GivenQuantity, read_all, split};
 use crate::density::Observable;
 use crate::formula::language::check_name;
 use crate::sweep_file::diagnostic::{Diagnostic, Place};
@@ -46,7 +46,7 @@ pub(super) fn read(
         |axis: usize| !has_modes(axis) && model.phase_axis() != Some(axis) || is_angle(axis);
     let whole = reader.document().root.place.clone();
     let mut observables: Vec<Observable> = Vec::new();
-    let mut given: Vec<Given> = Vec::new();
+    let mut given: Vec<GivenQuantity> = Vec::new();
     match &draft.marginals {
         Some(texts) => {
             let items = reader.items(&["detect", "marginals"]);
@@ -112,12 +112,12 @@ pub(super) fn read(
         reader.report(diagnostic);
     }
     let quantities = read_all(reader, model, &given);
-    let averaged: Vec<Given> = reader
+    let averaged: Vec<GivenQuantity> = reader
         .entries(&["watch"])
         .iter()
         .filter_map(|entry| {
             let known = draft.averaged.iter().find(|(name, _)| *name == entry.key);
-            known.map(|(name, text)| Given {
+            known.map(|(name, text)| GivenQuantity {
                 at_phase: None,
                 name: name.clone(),
                 formula: Some((text.clone(), 0)),
@@ -164,16 +164,16 @@ fn refuse_modes(
 fn coordinate(
     reader: &mut Reader<'_>,
     model: &Model,
-    given: &mut Vec<Given>,
+    given: &mut Vec<GivenQuantity>,
     text: &str,
     at: &Place,
 ) -> Option<usize> {
     let dimension = model.axes.len();
-    let number = |given: &[Given], name: &str| {
+    let number = |given: &[GivenQuantity], name: &str| {
         let known = given.iter().position(|one| one.name == name);
         known.map(|number| dimension + number)
     };
-    let new = |name: &str, formula: Option<(String, usize)>| Given {
+    let new = |name: &str, formula: Option<(String, usize)>| GivenQuantity {
         at_phase: None,
         name: name.to_owned(),
         formula,
@@ -213,11 +213,16 @@ fn coordinate(
 }
 
 /// An axis at phase 0 of the forcing, where there is one.
-fn at_zero(model: &Model, given: &mut Vec<Given>, axis: usize, at: &Place) -> Option<usize> {
+fn at_zero(
+    model: &Model,
+    given: &mut Vec<GivenQuantity>,
+    axis: usize,
+    at: &Place,
+) -> Option<usize> {
     let quantity = Quantity::at_phase(model, AtPhase { axis, phase: 0.0 })?;
     let known = given.iter().position(|one| one.name == quantity.name());
     let number = known.unwrap_or_else(|| {
-        given.push(Given {
+        given.push(GivenQuantity {
             name: quantity.name().to_owned(),
             at_phase: Some(quantity),
             formula: None,
@@ -233,12 +238,12 @@ fn at_zero(model: &Model, given: &mut Vec<Given>, axis: usize, at: &Place) -> Op
 fn of_one_moment(
     reader: &mut Reader<'_>,
     model: &Model,
-    given: &mut Vec<Given>,
+    given: &mut Vec<GivenQuantity>,
     (one, other): (usize, usize),
     at: &Place,
 ) -> Option<(usize, usize)> {
     let dimension = model.axes.len();
-    let phase = |number: usize, given: &[Given]| {
+    let phase = |number: usize, given: &[GivenQuantity]| {
         let known = given.get(number.checked_sub(dimension)?)?;
         known.at_phase.as_ref()?.phase()
     };
@@ -274,7 +279,7 @@ fn of_one_moment(
 fn moment(
     reader: &mut Reader<'_>,
     model: &Model,
-    given: &mut Vec<Given>,
+    given: &mut Vec<GivenQuantity>,
     (axis, when): (&str, &str),
     at: &Place,
 ) -> Option<usize> {
@@ -312,7 +317,7 @@ fn moment(
             let name = quantity.name().to_owned();
             let place = given.iter().position(|one| one.name == name);
             let place = place.unwrap_or_else(|| {
-                given.push(Given {
+                given.push(GivenQuantity {
                     name,
                     at_phase: Some(quantity),
                     formula: None,
@@ -339,7 +344,13 @@ fn fraction(text: &str) -> Option<f64> {
 }
 
 /// Reports a text that is neither a name nor a quantity.
-fn unknown(reader: &mut Reader<'_>, model: &Model, given: &[Given], text: &str, at: &Place) {
+fn unknown(
+    reader: &mut Reader<'_>,
+    model: &Model,
+    given: &[GivenQuantity],
+    text: &str,
+    at: &Place,
+) {
     if text.contains(|c: char| "+-*/^()".contains(c) || c == ' ') {
         let title = format!("a formula needs a name: `{}`", quotable(text));
         let diagnostic = Diagnostic::new(title).at(at, "no name");

@@ -1,7 +1,7 @@
 use super::*;
 use toml::de::DeTable;
 
-fn said(text: &str) -> String {
+fn message(text: &str) -> String {
     let (_, errors) = DeTable::parse_recoverable(text);
     let (found, _) = findings(text, &errors, 0, 0);
     let report = super::super::Report::new(Default::default(), found, 0);
@@ -52,7 +52,7 @@ fn slips_are_named() {
         ("[a\nb = 1", "unclosed table"),
         ("x = { a = 1 }\nx.b = 2", "between the braces"),
     ] {
-        let text = said(text);
+        let text = message(text);
         assert!(text.contains(words), "{words} not in\n{text}");
         assert!(
             text.contains("not valid TOML") && text.contains("1 error"),
@@ -68,14 +68,14 @@ fn nesting_is_bounded() {
         format!("a = {}", "{ a = ".repeat(50_000)),
         format!("a{} = 1", ".a".repeat(100_000)),
     ] {
-        let text = said(&text);
+        let text = message(&text);
         assert!(text.contains("recurs") && text.len() < 2000, "{text}");
     }
 }
 
 #[test]
 fn errors_are_named_once_a_line_and_counted_beyond_the_first() {
-    let text = said("= = =\n= = =\n");
+    let text = message("= = =\n= = =\n");
     assert!(text.contains("2 errors"), "{text}");
     let many = "= = =\n".repeat(1000);
     let (_, errors) = DeTable::parse_recoverable(&many);

@@ -48,7 +48,7 @@ pub(super) use crest::flanks_of_crests;
 pub use exact::Flank;
 pub use kind::IndicatorKind;
 pub(crate) use natural_end::peaks_at_ends;
-pub(super) use pair::put_right;
+pub(super) use pair::correct_about_centre;
 pub(super) use section::flanks_from_centre;
 pub(super) use shoulder::shoulders;
 

@@ -16,7 +16,7 @@ const REACH: usize = 4;
 
 /// Puts the features about the centre of a marginal right, where the sign of its indicator is beyond doubt; elsewhere a
 /// peak that stands there alone is moved onto it.
-pub(crate) fn put_right(
+pub(crate) fn correct_about_centre(
     estimated: &EstimatedDensity,
     indicators: &[Indicator],
     doubt: f64,

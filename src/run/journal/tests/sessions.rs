@@ -88,7 +88,7 @@ fn diary(count: &Arc<Mutex<usize>>) -> Box<dyn DensitySource> {
 }
 
 /// What a session gives at values, each followed by questions.
-fn told(session: &mut dyn Session, steps: &[(f64, &[&str])]) -> Vec<String> {
+fn answers(session: &mut dyn Session, steps: &[(f64, &[&str])]) -> Vec<String> {
     let mut told = Vec::new();
     for (value, questions) in steps {
         match session.solve(*value) {
@@ -122,20 +122,21 @@ const SECOND: [(f64, &[&str]); 3] = [(3.0, &["a"]), (4.0, &[]), (1.0, &["c"])];
 fn sessions_that_were_stopped_anywhere_go_on_as_they_would_have() {
     let never = Cancellation::new();
     let count = Arc::default();
-    let whole = [&FIRST[..], &SECOND].map(|steps| told(diary(&count).open(&never).as_mut(), steps));
+    let whole =
+        [&FIRST[..], &SECOND].map(|steps| answers(diary(&count).open(&never).as_mut(), steps));
     for stop in 0..=FIRST.len() {
         let folder = tempfile::tempdir().unwrap();
         let journal = Journal::create(&folder.path().join(NAME), SWEEP).unwrap();
         let source = JournalledSource::new(diary(&count), &journal);
-        let part = told(source.open(&never).as_mut(), &FIRST[..stop]);
+        let part = answers(source.open(&never).as_mut(), &FIRST[..stop]);
         assert_eq!(part, whole[0][..part.len()]);
         let journal = open(folder.path(), SWEEP).unwrap();
         assert_eq!(journal.solves(), stop);
         *count.lock().unwrap() = 0;
         let source = JournalledSource::new(diary(&count), &journal);
         // In another order of sessions, of which the second begins as the first.
-        let second = told(source.open(&never).as_mut(), &SECOND);
-        let first = told(source.open(&never).as_mut(), &FIRST);
+        let second = answers(source.open(&never).as_mut(), &SECOND);
+        let first = answers(source.open(&never).as_mut(), &FIRST);
         assert_eq!([first, second], whole);
         let solved = FIRST.len() - stop + if stop == 0 { 3 } else { 2 };
         assert_eq!((*count.lock().unwrap(), source.solves()), (solved, solved));
@@ -148,7 +149,7 @@ fn a_session_that_is_asked_something_else_than_before_answers_as_it_would_have()
     let count = Arc::default();
     let folder = tempfile::tempdir().unwrap();
     let journal = Journal::create(&folder.path().join(NAME), SWEEP).unwrap();
-    told(
+    answers(
         JournalledSource::new(diary(&count), &journal)
             .open(&never)
             .as_mut(),
@@ -160,12 +161,12 @@ fn a_session_that_is_asked_something_else_than_before_answers_as_it_would_have()
         &[(3.0, &["a", "d", "e"]), (1.0, &[]), (-1.0, &[])],
     ];
     for other in others {
-        let whole = told(diary(&count).open(&never).as_mut(), other);
+        let whole = answers(diary(&count).open(&never).as_mut(), other);
         // The second time from what the first has added.
         for _ in 0..2 {
             let journal = open(folder.path(), SWEEP).unwrap();
             let source = JournalledSource::new(diary(&count), &journal);
-            assert_eq!(told(source.open(&never).as_mut(), other), whole);
+            assert_eq!(answers(source.open(&never).as_mut(), other), whole);
         }
     }
 }

@@ -34,7 +34,7 @@ pub(in crate::stationary::generator) fn has_phase(space: &CellSpace) -> bool {
 
 /// Whether the modes of each axis are taken one by one: those of a phase, of which the forcing alone takes to others;
 /// or else those that take from lower ones only.
-fn taken_apart(space: &CellSpace) -> Vec<bool> {
+fn separate_modes(space: &CellSpace) -> Vec<bool> {
     let has_phase = has_phase(space);
     let is_apart = |axis: &Axis| match has_phase {
         true => axis.is_phase(),
@@ -48,7 +48,7 @@ fn taken_apart(space: &CellSpace) -> Vec<bool> {
 pub(in crate::stationary::generator) fn others(
     space: &CellSpace,
 ) -> Option<(CellSpace, Vec<usize>)> {
-    let apart = taken_apart(space).into_iter().enumerate();
+    let apart = separate_modes(space).into_iter().enumerate();
     let kept: Vec<usize> = apart
         .filter(|(_, is_apart)| !is_apart)
         .map(|(number, _)| number)

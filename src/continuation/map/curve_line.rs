@@ -14,13 +14,13 @@ pub(super) const IDENTICAL: f64 = 1e-3;
 pub(super) const SAME: f64 = 4e-3;
 
 /// A curve as a line in the box with sides of length one.
-pub(super) struct Drawn {
+pub(super) struct CurveLine {
     pub(super) observable: usize,
     pub(super) kind: IndicatorKind,
     pub(super) line: Vec<[f64; 2]>,
 }
 
-impl Drawn {
+impl CurveLine {
     /// Whether a crossing is one with this curve.
     pub(super) fn explains(&self, crossing: &Crossing) -> bool {
         if self.observable != crossing.observable {

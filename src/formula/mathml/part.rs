@@ -20,7 +20,7 @@ pub(super) enum Level {
 
 /// A part of a formula.
 #[derive(Debug, Clone)]
-pub(super) struct Laid {
+pub(super) struct Part {
     /// Side by side, without the sign.
     elements: Vec<Element>,
     /// Whether a minus stands before it: it is drawn in front of a whole product or fraction.
@@ -32,7 +32,7 @@ fn operator(sign: &str) -> Element {
     Element::text("mo", sign)
 }
 
-impl Laid {
+impl Part {
     pub(super) fn new(element: Element, level: Level) -> Self {
         Self {
             elements: vec![element],
