@@ -13,7 +13,6 @@
 //! grow with its square and its cube.
 
 mod blocks;
-mod scaled;
 #[cfg(test)]
 mod tests;
 
@@ -23,10 +22,10 @@ use sprs::CsMat;
 
 use super::dissection::Dissection;
 use super::modewise::Layout;
+use super::scaled::{Scaled, factors};
 use super::symbolic::Symbolic;
 use crate::cancellation::{Cancellation, Cancelled};
 use blocks::{Blocks, Wave, blocks};
-use scaled::{Scaled, factors};
 
 /// Share of its largest mass that the averaged generator's steady state must have in the held cell: with less, another
 /// cell is held.

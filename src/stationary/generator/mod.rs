@@ -41,6 +41,7 @@ mod preconditioner;
 mod prediction;
 mod question;
 mod response;
+mod scaled;
 mod solver;
 mod symbolic;
 mod symmetric;

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use sprs::CsMat;
 
 use super::dissection::Dissection;
-use super::fronts::{Factors, allocate, factorise};
+use super::scaled::{Scaled, factors, hold};
 use super::symbolic::Symbolic;
 use super::triangular::{self, transposed::solve_transposed};
 use crate::cancellation::{Cancellation, Cancelled};
@@ -34,19 +34,13 @@ const TRIED: usize = 3;
 pub(super) struct ModeFactors {
     layout: Layout,
     symbolic: Symbolic,
-    modes: Vec<Mode>,
+    modes: Vec<Scaled<f32>>,
     /// Rates from lower modes into higher ones at a place, `place · count²/2 + row (row - 1)/2 + column`.
     below: Vec<f32>,
     /// The stand-in's own steady state.
     null: Vec<f64>,
     /// The cell held. The lowest mode is held at its place.
     pub(super) held: usize,
-}
-
-/// The factors of one mode, of a matrix over `scale`.
-struct Mode {
-    factors: Factors<f32>,
-    scale: f64,
 }
 
 impl ModeFactors {
@@ -78,9 +72,9 @@ impl ModeFactors {
         // Only the lowest mode has a steady state: the others die out.
         let modes = (0..count).into_par_iter().map(|mode| {
             let held = (mode == 0).then(|| layout.place(held));
-            Mode::new(&symbolic, &pattern, rates(mode), held, cancellation)
+            mode_factors(&symbolic, &pattern, rates(mode), held, cancellation)
         });
-        let modes: Result<Vec<Mode>, Cancelled> = modes.collect();
+        let modes: Result<Vec<Scaled<f32>>, Cancelled> = modes.collect();
         let mut this = Self {
             modes: modes?,
             null: Vec::new(),
@@ -105,7 +99,7 @@ impl ModeFactors {
             }
             this.held = best;
             let place = Some(this.layout.place(best));
-            this.modes[0] = Mode::new(
+            this.modes[0] = mode_factors(
                 &this.symbolic,
                 &pattern,
                 lowest.clone(),
@@ -174,7 +168,7 @@ impl ModeFactors {
         for (number, mode) in self.modes.iter().enumerate().rev() {
             let right = |&place: &u32| moments[place as usize * count + number];
             let mut values: Vec<f64> = order.iter().map(right).collect();
-            solve_transposed(&self.symbolic, &mode.factors.fronts, &mut values);
+            solve_transposed(&self.symbolic, &mode.fronts, &mut values);
             for (&place, value) in order.iter().zip(&values) {
                 moments[place as usize * count + number] = value / mode.scale;
             }
@@ -225,7 +219,7 @@ impl ModeFactors {
                 }
             }
             let vectors = ordered.each_mut().map(Vec::as_mut_slice);
-            triangular::solve(&self.symbolic, &mode.factors.fronts, vectors);
+            triangular::solve(&self.symbolic, &mode.fronts, vectors);
             for (moments, values) in moments.iter_mut().zip(&ordered) {
                 for (&place, value) in order.iter().zip(values) {
                     moments[place as usize * count + number] = value / mode.scale;
@@ -242,40 +236,20 @@ impl ModeFactors {
     }
 }
 
-impl Mode {
-    /// Factorises rates between places, with a place held if one is given.
-    fn new(
-        symbolic: &Symbolic,
-        pattern: &CsMat<f64>,
-        mut rates: Vec<f64>,
-        held: Option<usize>,
-        cancellation: &Cancellation,
-    ) -> Result<Self, Cancelled> {
-        let largest = rates
-            .iter()
-            .fold(0.0_f64, |most, rate| most.max(rate.abs()));
-        let scale = if largest > 0.0 && largest.is_finite() {
-            largest.log2().round().exp2()
-        } else {
-            1.0
-        };
-        rates.iter_mut().for_each(|rate| *rate /= scale);
-        let mut position = None;
-        if let Some(held) = held {
-            let starts = pattern.indptr();
-            let starts = starts.raw_storage();
-            rates[starts[held]..starts[held + 1]].fill(0.0);
-            let entries = rates.iter_mut().zip(pattern.indices());
-            let row = entries.filter(|(_, row)| **row == held);
-            row.for_each(|(rate, _)| *rate = 0.0);
-            let mut order = symbolic.order.iter();
-            position = order.position(|&place| place as usize == held);
-        }
-        let mut factors = allocate(symbolic);
-        let position = position.unwrap_or(usize::MAX);
-        factorise(symbolic, &rates, position, &mut factors, cancellation)?;
-        Ok(Self { factors, scale })
-    }
+/// Factorises the rates of a mode between places, with a place held if one is given.
+fn mode_factors(
+    symbolic: &Symbolic,
+    pattern: &CsMat<f64>,
+    mut rates: Vec<f64>,
+    held: Option<usize>,
+    cancellation: &Cancellation,
+) -> Result<Scaled<f32>, Cancelled> {
+    let position = held.and_then(|held| {
+        hold(&mut rates, pattern, held);
+        let mut order = symbolic.order.iter();
+        order.position(|&place| place as usize == held)
+    });
+    factors(symbolic, rates, position, cancellation)
 }
 
 /// Σ a b, in a fixed order.

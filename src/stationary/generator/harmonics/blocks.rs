@@ -11,6 +11,7 @@ use sprs::CsMat;
 
 use crate::stationary::generator::modewise::Layout;
 use crate::stationary::generator::number::Number;
+use crate::stationary::generator::scaled::hold;
 
 /// A number of a harmonic at a place: cosine minus i times sine, of orthonormal functions.
 pub(super) type Wave = Complex<f64>;
@@ -135,10 +136,7 @@ impl Blocks {
     /// Averages with those of a row and a column at zero.
     pub(super) fn with_held(&self, place: usize) -> Vec<f64> {
         let mut rates = self.mean.clone();
-        rates[self.column(place)].fill(0.0);
-        let entries = rates.iter_mut().zip(self.pattern.indices());
-        let row = entries.filter(|(_, row)| **row == place);
-        row.for_each(|(rate, _)| *rate = 0.0);
+        hold(&mut rates, &self.pattern, place);
         rates
     }
 

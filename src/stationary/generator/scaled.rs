@@ -1,15 +1,27 @@
 //! Factors of one matrix between places, real or complex, and solves with them.
 
+use sprs::CsMat;
+
+use super::fronts::{Factor, allocate, factorise};
+use super::number::{Number, Wide};
+use super::symbolic::Symbolic;
+use super::triangular::{self, transposed::solve_transposed};
 use crate::cancellation::{Cancellation, Cancelled};
-use crate::stationary::generator::fronts::{Factor, allocate, factorise};
-use crate::stationary::generator::number::{Number, Wide};
-use crate::stationary::generator::symbolic::Symbolic;
-use crate::stationary::generator::triangular::{self, transposed::solve_transposed};
 
 /// Factors of a matrix over `scale`.
 pub(super) struct Scaled<T> {
-    fronts: Vec<Factor<T>>,
-    scale: f64,
+    pub(super) fronts: Vec<Factor<T>>,
+    pub(super) scale: f64,
+}
+
+/// Takes a place out of rates by columns of a pattern: nothing comes from it, and nothing goes to it.
+pub(super) fn hold(rates: &mut [f64], pattern: &CsMat<f64>, place: usize) {
+    let starts = pattern.indptr();
+    let starts = starts.raw_storage();
+    rates[starts[place]..starts[place + 1]].fill(0.0);
+    let entries = rates.iter_mut().zip(pattern.indices());
+    let row = entries.filter(|(_, row)| **row == place);
+    row.for_each(|(rate, _)| *rate = 0.0);
 }
 
 /// Factors of rates between places, with the place at a position in the order of elimination held.
