@@ -1,10 +1,10 @@
 //! Where other curves pass that begin at a point of codimension two of a curve, found beside it.
 
 use super::companion::ends_there;
-use super::degenerate::{Both, Seeker, solve_pair};
+use super::degenerate::{Both, solve_pair};
 use super::reading::Reader;
 use super::walked::{Walked, within};
-use super::{CodimensionTwoKind, CurvePoint, CurveStart, CurveWork};
+use super::{CodimensionTwoKind, CurvePoint, CurveStart, CurveWork, Task};
 use crate::density::Density;
 use crate::topology::IndicatorKind;
 
@@ -21,7 +21,7 @@ const NEAR_CURVE: f64 = 0.05;
 /// Distance from a corner at which the other curve is met.
 const BESIDE_CORNER: f64 = 0.03;
 
-impl Seeker<'_> {
+impl Task<'_> {
     /// Where another curve passes that begins at a point; `away` are the places of the points on the side of it where
     /// the companion is positive, from it on.
     pub(super) fn branch(
@@ -39,7 +39,7 @@ impl Seeker<'_> {
             CodimensionTwoKind::KinkCorner => self.other_side(both),
             CodimensionTwoKind::Crossing => Some(CurveStart {
                 values: point.values,
-                observable: self.0.start.observable,
+                observable: self.start.observable,
                 kind: both.companion.kind,
                 place: both.companion.place.clone(),
             }),
@@ -67,7 +67,7 @@ impl Seeker<'_> {
             }
         }
         let node = node?;
-        let centre = &self.0.start.place;
+        let centre = &self.start.place;
         let peak = peak_away(&node.reading.density, centre)?;
         let steepest = centre
             .iter()
@@ -81,8 +81,8 @@ impl Seeker<'_> {
                 (IndicatorKind::FOLD, steepest),
             ],
         };
-        let mut reader = self.reader(self.0.source, self.0.start.kind);
-        self.0.plane.begin(node.foot);
+        let mut reader = self.reader(self.source, self.start.kind);
+        self.plane.begin(node.foot);
         let found = tried.into_iter().find_map(|(kind, near)| {
             reader.kind = kind;
             let reading = reader.read(node.foot, &near).ok()?;
@@ -95,10 +95,10 @@ impl Seeker<'_> {
     /// The fold that begins at a degenerate kink: it leaves along the curve, so it is near on one side of the point or
     /// the other. Of the inflections beside the kink that one tells which is nearest to a zero.
     fn fold_of_kink(&self, both: &Both, work: &mut CurveWork) -> Option<CurveStart> {
-        let kink = self.0.start.place.first().copied()?;
-        let above = self.0.start.kind.traits().side_of_kink.unwrap_or(true);
+        let kink = self.start.place.first().copied()?;
+        let above = self.start.kind.traits().side_of_kink.unwrap_or(true);
         let side = if above { 1.0 } else { -1.0 };
-        let mut reader = self.reader(self.0.source, self.0.start.kind);
+        let mut reader = self.reader(self.source, self.start.kind);
         let mut nearest: Option<(f64, CurveStart)> = None;
         let along = both.reading.tangent();
         for length in [LEAVES, -LEAVES, 0.5 * LEAVES, -0.5 * LEAVES] {
@@ -109,7 +109,7 @@ impl Seeker<'_> {
             if !within(at) {
                 continue;
             }
-            self.0.plane.begin(at);
+            self.plane.begin(at);
             for rising in [true, false] {
                 reader.kind = IndicatorKind::shoulder(rising);
                 let Some((gap, start)) = self.inflection(&mut reader, at, kink, side) else {
@@ -162,8 +162,8 @@ impl Seeker<'_> {
 
     fn start_at(&self, at: [f64; 2], kind: IndicatorKind, place: Vec<f64>) -> CurveStart {
         CurveStart {
-            values: self.0.plane.values(at),
-            observable: self.0.start.observable,
+            values: self.plane.values(at),
+            observable: self.start.observable,
             kind,
             place,
         }

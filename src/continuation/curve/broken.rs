@@ -4,9 +4,8 @@
 //! two is a cusp, from which two folds leave, and a kink that turns is a corner, from which the curves of both of its
 //! sides leave.
 
-use super::degenerate::Seeker;
 use super::walked::{Walked, within};
-use super::{CurvePoint, CurveStart, CurveWork, EndReason};
+use super::{CurvePoint, CurveStart, CurveWork, EndReason, Task};
 use crate::continuation::{BifurcationStatus, Doubt};
 use crate::topology::IndicatorKind;
 
@@ -15,7 +14,7 @@ const BESIDE: [f64; 3] = [0.05, 0.1, 0.02];
 /// Farthest that a curve may be from there.
 const NEAR: f64 = 0.1;
 
-impl Seeker<'_> {
+impl Task<'_> {
     /// Ends a curve that is one point in it, where that is because the symmetry is lost beside it; gives where the
     /// curves pass that begin there.
     pub(super) fn break_symmetry(
@@ -35,14 +34,14 @@ impl Seeker<'_> {
             return Vec::new();
         }
         let companion = node.reading.companions.first().copied().flatten();
-        let (Some(companion), [_]) = (companion, self.0.start.place.as_slice()) else {
+        let (Some(companion), [_]) = (companion, self.start.place.as_slice()) else {
             return Vec::new();
         };
         let is_valley = companion < 0.0;
         let sides = [true, false];
-        let (reason, kinds) = if self.0.start.kind == IndicatorKind::CURVATURE {
+        let (reason, kinds) = if self.start.kind == IndicatorKind::CURVATURE {
             (EndReason::Cusp, sides.map(IndicatorKind::shoulder))
-        } else if self.0.start.kind == IndicatorKind::KINK_SLOPE {
+        } else if self.start.kind == IndicatorKind::KINK_SLOPE {
             let kinds = sides.map(|above| IndicatorKind::beside_kink(above, is_valley));
             (EndReason::KinkCorner, kinds)
         } else {
@@ -56,16 +55,16 @@ impl Seeker<'_> {
             if !within(at) {
                 return None;
             }
-            self.0.plane.begin(at);
-            let mut reader = self.reader(self.0.source, self.0.start.kind);
+            self.plane.begin(at);
+            let mut reader = self.reader(self.source, self.start.kind);
             let starts = kinds.map(|kind| {
                 reader.kind = kind;
-                let reading = reader.read(at, &self.0.start.place).ok()?;
+                let reading = reader.read(at, &self.start.place).ok()?;
                 let foot = reading.foot();
                 let is_near = reading.distance().abs() <= NEAR && within(foot);
                 is_near.then(|| CurveStart {
-                    values: self.0.plane.values(foot),
-                    observable: self.0.start.observable,
+                    values: self.plane.values(foot),
+                    observable: self.start.observable,
                     kind,
                     place: reading.indicator.place,
                 })

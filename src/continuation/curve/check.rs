@@ -4,7 +4,7 @@
 //! As for the rows of a sweep, the finer value is the better one and is kept: the curve moves by what the checked
 //! points show, interpolated along it, and the error of that is stated from the distance between coarse and fine.
 
-use super::reading::{NoReading, Reader};
+use super::reading::NoReading;
 use super::walked::{WalkPoint, Walked};
 use super::{CurvePoint, CurveWork, Task};
 use crate::continuation::grid::share_of_distance;
@@ -50,10 +50,7 @@ impl Check {
     }
 }
 
-/// How curves are checked.
-pub(super) struct Checks<'a>(pub(super) Task<'a>);
-
-impl Checks<'_> {
+impl Task<'_> {
     /// The points with their errors, and what checking them took.
     pub(super) fn judge(&self, walked: &Walked) -> (Vec<CurvePoint>, CurveWork) {
         let selected = self.selection(walked);
@@ -67,8 +64,8 @@ impl Checks<'_> {
             .collect();
         let mut work = CurveWork::default();
         if !checks.is_empty() {
-            let want = Want::densities(&self.0.source.subject().observables);
-            let finer = self.0.source.finer(&want);
+            let want = Want::densities(&self.source.subject().observables);
+            let finer = self.source.finer(&want);
             match finer {
                 Ok(Some(source)) => {
                     let shown = self.ask(source.as_ref(), walked, &selected, &mut work);
@@ -85,26 +82,26 @@ impl Checks<'_> {
                 .points
                 .iter()
                 .any(|node| node.reading.edge_mass > QUIET);
-            if let Some(source) = self.0.source.enclosed(&want).filter(|_| leaks) {
+            if let Some(source) = self.source.enclosed(&want).filter(|_| leaks) {
                 let shown = self.ask(source.as_ref(), walked, &selected, &mut work);
                 let pairs = checks.iter_mut().zip(shown);
                 pairs.for_each(|(check, shown)| check.enclosed = shown);
             }
         }
         checks.retain(|check| check.finer.is_some() || check.enclosed.is_some());
-        let of_distance = share_of_distance(self.0.source.subject().cell_check);
+        let of_distance = share_of_distance(self.source.subject().cell_check);
         let nodes = walked.points.iter().enumerate();
         let points = nodes.map(|(index, node)| {
             let check = between(&checks, &walked.points, index, of_distance);
-            self.point(node, &check)
+            self.checked_point(node, &check)
         });
         (points.collect(), work)
     }
 
     /// The points that are checked. The slope at a kink follows from the equations: no grid takes part.
     fn selection(&self, walked: &Walked) -> Vec<usize> {
-        let every = self.0.options.check_every;
-        if every == 0 || self.0.start.kind.traits().is_exact {
+        let every = self.options.check_every;
+        if every == 0 || self.start.kind.traits().is_exact {
             return Vec::new();
         }
         let last = walked.points.len() - 1;
@@ -123,13 +120,7 @@ impl Checks<'_> {
         selected: &[usize],
         work: &mut CurveWork,
     ) -> Vec<Option<Shift>> {
-        let mut reader = Reader::new(
-            source,
-            self.0.plane,
-            self.0.detector,
-            self.0.start,
-            self.0.cancellation,
-        );
+        let mut reader = self.reader(source, self.start.kind);
         let mut shown = vec![None; selected.len()];
         // In the order in which the path was walked, neighbours follow each other.
         let mut order: Vec<usize> = (0..selected.len()).collect();
@@ -157,11 +148,11 @@ impl Checks<'_> {
         shown
     }
 
-    fn point(&self, node: &WalkPoint, check: &Interpolated) -> CurvePoint {
+    fn checked_point(&self, node: &WalkPoint, check: &Interpolated) -> CurvePoint {
         let reading = &node.reading;
         let (indicator, steepness) = (&reading.indicator, reading.steepness());
         let sampling = if indicator.sampling_error > 0.0 {
-            let doubt = 1.0 - self.0.detector.confidence();
+            let doubt = 1.0 - self.detector.confidence();
             indicator.sampling_error * two_sided_limit(doubt, indicator.degrees_of_freedom)
         } else {
             0.0
@@ -181,9 +172,9 @@ impl Checks<'_> {
             Some(side) => foot[1 - side] += check.shift / uphill[1 - side],
             None => (0..2).for_each(|k| foot[k] += check.shift * uphill[k]),
         }
-        let sides = self.0.plane.sides();
-        let depends_on_cells = !self.0.start.kind.traits().is_exact;
-        let unchecked = if self.0.options.check_every == 0 {
+        let sides = self.plane.sides();
+        let depends_on_cells = !self.start.kind.traits().is_exact;
+        let unchecked = if self.options.check_every == 0 {
             Doubt::GridCheckOff
         } else {
             Doubt::CheckMissing
@@ -192,7 +183,7 @@ impl Checks<'_> {
         let known = (check.doubt.clone(), is_unchecked.then_some(unchecked));
         let against = reading.against(depends_on_cells);
         CurvePoint {
-            values: self.0.plane.values(foot),
+            values: self.plane.values(foot),
             error,
             parts,
             to_edge: [0, 1].map(|k| error * uphill[k] * sides[k].length()),
@@ -202,7 +193,7 @@ impl Checks<'_> {
             arclength: node.arclength,
             tangent: [0, 1].map(|k| node.tangent[k] * sides[k].length()),
             checked: check.is_own,
-            doubts: reading.doubts(&self.0, known, against, parts),
+            doubts: reading.doubts(self, known, against, parts),
         }
     }
 }

@@ -23,9 +23,6 @@ const SETTLED: f64 = 1e-5;
 /// Farthest that the point may be from where the companion changes its sign.
 const FAR: f64 = 0.05;
 
-/// What finds them.
-pub(super) struct Seeker<'a>(pub(super) Task<'a>);
-
 /// Two neighbouring points between which a companion changes its sign.
 pub(super) struct SignChange {
     between: (usize, usize),
@@ -111,7 +108,7 @@ pub(super) struct Both {
     own: f64,
 }
 
-impl Seeker<'_> {
+impl Task<'_> {
     /// The points of codimension two of a curve, in its order; `judged` are its points as far as they are checked.
     pub(super) fn search(
         &self,
@@ -119,7 +116,7 @@ impl Seeker<'_> {
         judged: &[CurvePoint],
         work: &mut CurveWork,
     ) -> Vec<SignChange> {
-        let start = self.0.start;
+        let start = self.start;
         let kinds = (start.kind.traits().companions)(start.place.len());
         let mut found: Vec<SignChange> = Vec::new();
         for (index, kind) in kinds.into_iter().enumerate() {
@@ -133,7 +130,7 @@ impl Seeker<'_> {
                 let [(from, a), (to, b)] = *pair else {
                     continue;
                 };
-                if (a > 0.0) == (b > 0.0) || self.0.cancellation.is_cancelled() {
+                if (a > 0.0) == (b > 0.0) || self.cancellation.is_cancelled() {
                     continue;
                 }
                 found.push(SignChange {
@@ -177,15 +174,15 @@ impl Seeker<'_> {
         judged: &CurvePoint,
         work: &mut CurveWork,
     ) -> Option<(CurvePoint, Both)> {
-        let coarse = self.newton(self.0.source, kind, near, work)?;
-        let want = Want::densities(&self.0.source.subject().observables);
+        let coarse = self.newton(self.source, kind, near, work)?;
+        let want = Want::densities(&self.source.subject().observables);
         let fine = self.on_finer_cells(&want, (kind, coarse.at), work);
         let leaks = coarse.companion_reading.edge_mass > QUIET;
-        let enclosed = self.0.source.enclosed(&want).filter(|_| leaks);
+        let enclosed = self.source.enclosed(&want).filter(|_| leaks);
         let enclosed =
             enclosed.and_then(|source| self.newton(source.as_ref(), kind, coarse.at, work));
         let leak = enclosed.map_or(0.0, |enclosed| apart(enclosed.at, coarse.at));
-        let of_distance = share_of_distance(self.0.source.subject().cell_check);
+        let of_distance = share_of_distance(self.source.subject().cell_check);
         let (at, grid) = match &fine {
             Ok(fine) => (fine.at, of_distance * apart(fine.at, coarse.at)),
             Err(_) => (coarse.at, coarse.own),
@@ -198,7 +195,7 @@ impl Seeker<'_> {
         };
         let error = parts.total();
         let reading = &coarse.reading;
-        let (sides, uphill) = (self.0.plane.sides(), reading.uphill());
+        let (sides, uphill) = (self.plane.sides(), reading.uphill());
         let mut tangent = reading.tangent();
         if tangent[0] * from.tangent[0] + tangent[1] * from.tangent[1] < 0.0 {
             tangent = tangent.map(|part| -part);
@@ -211,7 +208,7 @@ impl Seeker<'_> {
         };
         let against = coarse.companion_reading.against(true);
         let point = CurvePoint {
-            values: self.0.plane.values(at),
+            values: self.plane.values(at),
             error,
             parts,
             to_edge: [0, 1].map(|k| error * uphill[k] * sides[k].length()),
@@ -221,7 +218,7 @@ impl Seeker<'_> {
             arclength: from.arclength + apart(coarse.at, from.foot),
             tangent: [0, 1].map(|k| tangent[k] * sides[k].length()),
             checked,
-            doubts: reading.doubts(&self.0, (check, unchecked), against, parts),
+            doubts: reading.doubts(self, (check, unchecked), against, parts),
         };
         Some((point, coarse))
     }
@@ -233,10 +230,10 @@ impl Seeker<'_> {
         (kind, near): (IndicatorKind, [f64; 2]),
         work: &mut CurveWork,
     ) -> Result<Both, Doubt> {
-        if self.0.options.check_every == 0 {
+        if self.options.check_every == 0 {
             return Err(Doubt::GridCheckOff);
         }
-        match self.0.source.finer(want) {
+        match self.source.finer(want) {
             Ok(Some(source)) => self
                 .newton(source.as_ref(), kind, near, work)
                 .ok_or(Doubt::NotOnFinerCells),
@@ -256,8 +253,8 @@ impl Seeker<'_> {
         near: [f64; 2],
         work: &mut CurveWork,
     ) -> Option<Both> {
-        let mut reader = self.reader(source, self.0.start.kind);
-        self.0.plane.begin(near);
+        let mut reader = self.reader(source, self.start.kind);
+        self.plane.begin(near);
         let found = self.steps(&mut reader, kind, near);
         work.add(&reader.work);
         found
@@ -266,10 +263,10 @@ impl Seeker<'_> {
     fn steps(&self, reader: &mut Reader<'_>, kind: IndicatorKind, near: [f64; 2]) -> Option<Both> {
         let mut at = near;
         for _ in 0..MOST_STEPS {
-            reader.kind = self.0.start.kind;
-            let own = reader.read(at, &self.0.start.place).ok()?;
+            reader.kind = self.start.kind;
+            let own = reader.read(at, &self.start.place).ok()?;
             reader.kind = kind;
-            let companion = reader.read(at, &self.0.start.place).ok()?;
+            let companion = reader.read(at, &self.start.place).ok()?;
             let step =
                 solve_pair([&own, &companion].map(|one| (one.gradient, -one.indicator.value)))?;
             at = [0, 1].map(|k| at[k] + step[k]);
@@ -298,18 +295,6 @@ impl Seeker<'_> {
             }
         }
         None
-    }
-
-    pub(super) fn reader(&self, source: &dyn DensitySource, kind: IndicatorKind) -> Reader<'_> {
-        let mut reader = Reader::new(
-            source,
-            self.0.plane,
-            self.0.detector,
-            self.0.start,
-            self.0.cancellation,
-        );
-        reader.kind = kind;
-        reader
     }
 }
 

@@ -205,10 +205,9 @@ pub fn follow(
         options,
         cancellation,
     };
-    let mut walked = walk::Follower(task).both_ways(observer)?;
-    let (mut points, mut check_work) = check::Checks(task).judge(&walked);
-    let seeker = degenerate::Seeker(task);
-    let mut broken = seeker.break_symmetry(&mut walked, &mut points, &mut check_work);
+    let mut walked = task.both_ways(observer)?;
+    let (mut points, mut check_work) = task.judge(&walked);
+    let mut broken = task.break_symmetry(&mut walked, &mut points, &mut check_work);
     // A zero beside which there is no curve is not one of a smooth indicator.
     if let [alone] = points.as_mut_slice()
         && matches!(
@@ -219,7 +218,7 @@ pub fn follow(
     {
         alone.doubts.insert(0, Doubt::NoCurve);
     }
-    let found = seeker.search(&walked, &points, &mut check_work);
+    let found = task.search(&walked, &points, &mut check_work);
     let (degenerate, mut branches) = if companion::ends_there(start.kind) {
         (Vec::new(), degenerate::cut(&mut points, &mut walked, found))
     } else {

@@ -4,8 +4,7 @@
 //! the density moved a little along dp/dθ, and of what the equations imply at its kinks: exact to the digits of dp/dθ.
 //! Elsewhere two more solves beside the place give it by differences.
 
-use super::{CurveStart, CurveWork, Plane, Task, companion};
-use crate::cancellation::Cancellation;
+use super::{CurveWork, Plane, Task, companion};
 use crate::continuation::doubt::Evidence;
 use crate::continuation::measure::NUMERICAL_DIFFUSION;
 use crate::continuation::{
@@ -137,21 +136,15 @@ pub(super) struct Reader<'a> {
     pub(super) work: CurveWork,
 }
 
-impl<'a> Reader<'a> {
-    /// In a new session of a source, for the indicator that a curve starts from.
-    pub(super) fn new(
-        source: &dyn DensitySource,
-        plane: &'a Plane,
-        detector: &'a dyn Detector,
-        start: &CurveStart,
-        cancellation: &Cancellation,
-    ) -> Self {
-        Self {
-            session: source.open(cancellation),
-            plane,
-            detector,
-            observable: start.observable,
-            kind: start.kind,
+impl<'a> Task<'a> {
+    /// Reads an indicator in a new session of a source, which may be that of a check.
+    pub(super) fn reader(&self, source: &dyn DensitySource, kind: IndicatorKind) -> Reader<'a> {
+        Reader {
+            session: source.open(self.cancellation),
+            plane: self.plane,
+            detector: self.detector,
+            observable: self.start.observable,
+            kind,
             work: CurveWork::default(),
         }
     }

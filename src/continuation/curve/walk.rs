@@ -31,36 +31,23 @@ const ACROSS: f64 = 2.0;
 /// Fewest points of a closed curve.
 const FEWEST_CLOSED: usize = 6;
 
-/// What follows a curve.
-pub(super) struct Follower<'a>(pub(super) Task<'a>);
-
-impl<'a> Follower<'a> {
-    fn reader(&self) -> Reader<'a> {
-        Reader::new(
-            self.0.source,
-            self.0.plane,
-            self.0.detector,
-            self.0.start,
-            self.0.cancellation,
-        )
-    }
-
+impl Task<'_> {
     /// Both directions from the start.
     pub(super) fn both_ways(
         &self,
         observer: &mut dyn FnMut([f64; 2]),
     ) -> Result<Walked, CurveError> {
-        let mut reader = self.reader();
+        let mut reader = self.reader(self.source, self.start.kind);
         let start = self.begin(&mut reader)?;
-        observer(self.0.plane.values(start.foot));
+        observer(self.plane.values(start.foot));
         let (mut onward, last) = self.one_way(&mut reader, &start, observer);
         let mut work = reader.work;
         let mut ends = vec![last];
         let mut back = Vec::new();
         if !matches!(ends[0], EndReason::Closed | EndReason::Interrupted) {
             // Afresh: what was solved last is at the other end.
-            let mut reader = self.reader();
-            self.0.plane.begin(start.reading.at);
+            let mut reader = self.reader(self.source, self.start.kind);
+            self.plane.begin(start.reading.at);
             let mut turned = start.clone();
             turned.tangent = turned.tangent.map(|part| -part);
             let first;
@@ -86,11 +73,11 @@ impl<'a> Follower<'a> {
 
     /// The point of the curve at its start, the tangent toward larger values of the second parameter.
     fn begin(&self, reader: &mut Reader<'_>) -> Result<WalkPoint, CurveError> {
-        let at = self.0.plane.place(self.0.start.values);
-        self.0.plane.begin(at);
+        let at = self.plane.place(self.start.values);
+        self.plane.begin(at);
         let border = (0..2).find(|&k| at[k] <= 0.0 || at[k] >= 1.0);
         let sought = Sought {
-            near: &self.0.start.place,
+            near: &self.start.place,
             border,
             farthest: FAR,
             before: None,
@@ -99,7 +86,7 @@ impl<'a> Follower<'a> {
             EndReason::Interrupted => CurveError::Source(SourceError::Interrupted),
             EndReason::Sampling => CurveError::TooFewSamples,
             reason => CurveError::NoStart {
-                reason: reason.words(self.0.plane),
+                reason: reason.words(self.plane),
             },
         })?;
         let [x, y] = node.tangent;
@@ -119,11 +106,11 @@ impl<'a> Follower<'a> {
         let mut nodes: Vec<WalkPoint> = Vec::new();
         let mut bend = [0.0; 2];
         let mut known = start.reading.companions.clone();
-        let longest = self.0.options.largest_step;
+        let longest = self.options.largest_step;
         let mut step = 0.5 * longest;
         loop {
             let here = nodes.last().unwrap_or(start);
-            if nodes.len() >= self.0.options.most_points {
+            if nodes.len() >= self.options.most_points {
                 return (nodes, EndReason::TooManyPoints);
             }
             let Some((at, border)) = predict(here, bend, step) else {
@@ -148,7 +135,7 @@ impl<'a> Follower<'a> {
                     } else {
                         step
                     };
-                    observer(self.0.plane.values(node.foot));
+                    observer(self.plane.values(node.foot));
                     if nodes.len() >= FEWEST_CLOSED && passes(here.foot, node.foot, start.foot) {
                         let arclength = here.arclength + apart(here.foot, start.foot);
                         nodes.push(WalkPoint {
@@ -160,7 +147,7 @@ impl<'a> Follower<'a> {
                     let turned = companion::turn(&mut known, &node.reading.companions);
                     nodes.push(node);
                     // The last point is beyond the end, which lies between it and the one before.
-                    if turned.is_some() && companion::ends_there(self.0.start.kind) {
+                    if turned.is_some() && companion::ends_there(self.start.kind) {
                         return (nodes, EndReason::FeatureLost);
                     }
                     if let Some(side) = border {
@@ -193,7 +180,7 @@ impl<'a> Follower<'a> {
         let onward = [0, 1].map(|k| node.foot[k] - here.foot[k]);
         let turns = dot(node.tangent, here.tangent) < SHARP || dot(onward, here.tangent) <= 0.0;
         let distance = hellinger(&here.reading.density, &node.reading.density).unwrap_or(0.0);
-        if turns || distance > self.0.options.largest_distance {
+        if turns || distance > self.options.largest_distance {
             return Err(not_met(&node.reading));
         }
         node.arclength = here.arclength + apart(node.foot, here.foot);
