@@ -68,7 +68,7 @@ pub use timed::{Timed, WithError, timed};
 
 use crate::generator::{GeneratorError, levels};
 use crate::space::{CellSpace, SpaceError};
-use crate::stationary::generator::RateError;
+use crate::stationary::generator::{RateError, dot};
 use crate::system::{BoundQuantity, ParameterValues, PassageQuestion, PassageStart, SystemError};
 
 /// A question with values of all parameters: from where, until where.
@@ -172,9 +172,4 @@ pub enum PassageError {
     /// The generator could not be solved.
     #[error(transparent)]
     Rate(#[from] RateError),
-}
-
-/// Σ a b.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

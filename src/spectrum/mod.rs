@@ -100,7 +100,7 @@ pub use switching::{Switching, switching};
 
 use crate::generator::GeneratorError;
 use crate::space::SpaceError;
-use crate::stationary::generator::RateError;
+use crate::stationary::generator::{RateError, dot};
 
 /// What is known of the steady state.
 #[derive(Debug, Clone, Copy)]
@@ -126,9 +126,4 @@ pub enum SpectrumError {
     /// The generator could not be solved.
     #[error(transparent)]
     Rate(#[from] RateError),
-}
-
-/// Σ a b.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

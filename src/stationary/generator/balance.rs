@@ -42,7 +42,7 @@ pub(super) fn transposed_product(matrix: &CsMat<f64>, x: &[f64]) -> Vec<f64> {
 }
 
 /// Σ a b.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 

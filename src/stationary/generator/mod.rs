@@ -52,6 +52,7 @@ mod updates;
 
 pub use absorbing::AbsorbingWork;
 pub(crate) use absorbing::{AbsorbingSolver, Expected};
+pub(crate) use balance::dot;
 pub(crate) use memory::SolverMemory;
 pub use preconditioner::{Estimate, RateMethod, estimate};
 pub use symmetric::{Along, RateSolver};

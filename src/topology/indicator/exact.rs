@@ -16,6 +16,20 @@ pub struct Flank {
     pub line: usize,
 }
 
+impl Flank {
+    /// The extremum at a place of a marginal or a ray, from the slope there and at its neighbours on either side.
+    pub(super) fn between(place: f64, [left, here, right]: [f64; 3]) -> Option<Self> {
+        let is_highest = here >= left && here > right;
+        let is_lowest = here <= left && here < right;
+        (is_highest || is_lowest).then(|| Self {
+            line: 0,
+            rising: is_highest,
+            place,
+            value: if is_highest { here } else { -here },
+        })
+    }
+}
+
 /// The slope at its extremum of the given kind nearest to a place; none at a jump, where the slope beside it tells.
 pub(super) fn shoulder(
     profile: &Profile,

@@ -38,14 +38,7 @@ pub(crate) fn flanks_from_centre(estimated: &EstimatedDensity) -> Vec<Flank> {
         let [(_, left), (place, here), (_, right)] = *triple else {
             return None;
         };
-        let is_highest = here >= left && here > right;
-        let is_lowest = here <= left && here < right;
-        (is_highest || is_lowest).then(|| Flank {
-            line: 0,
-            rising: is_highest,
-            place,
-            value: if is_highest { here } else { -here },
-        })
+        Flank::between(place, [left, here, right])
     });
     extrema.collect()
 }

@@ -164,14 +164,7 @@ pub(crate) fn shoulders(estimated: &EstimatedDensity) -> Vec<Flank> {
         let [Some(left), Some(here), Some(right)] = *triple else {
             return None;
         };
-        let is_highest = here >= left && here > right;
-        let is_lowest = here <= left && here < right;
-        (is_highest || is_lowest).then(|| Flank {
-            line: 0,
-            rising: is_highest,
-            place: axis.edges()[below + 1],
-            value: if is_highest { here } else { -here },
-        })
+        Flank::between(axis.edges()[below + 1], [left, here, right])
     });
     let others = bends(estimated, &field).chain(kinks(estimated, &field));
     found.chain(others).collect()
