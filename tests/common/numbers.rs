@@ -1,4 +1,4 @@
-//! Numbers that look random and are the same everywhere (splitmix64).
+//! Numbers that look random and are the same everywhere (splitmix64), and numbers with errors.
 
 /// By its seed.
 pub(crate) struct Numbers(pub(crate) u64);
@@ -22,4 +22,15 @@ impl Numbers {
 pub(crate) fn given(name: &str, otherwise: u64) -> u64 {
     let text = std::env::var(name).ok();
     text.and_then(|text| text.parse().ok()).unwrap_or(otherwise)
+}
+
+/// A number holds an exact one within its stated error, and this error is below `largest`.
+#[track_caller]
+pub(crate) fn assert_holds([value, error]: [f64; 2], exact: f64, largest: f64) {
+    let off = (value - exact).abs();
+    assert!(off <= error, "{value} ± {error:e}, exactly {exact}");
+    assert!(
+        error < largest,
+        "{value} ± {error:e} instead of {largest:e}"
+    );
 }

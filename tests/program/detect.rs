@@ -217,6 +217,7 @@ fn refused(room: &Room, line: &str, words: &[&str]) {
 }
 
 #[test]
+#[rustfmt::skip]
 fn what_cannot_be_done_is_said_with_the_remedy() {
     let room = swept("bistable", "sweep.points=3 locate.tolerance=1");
     for command in ["detect", "plot"] {
@@ -240,27 +241,12 @@ fn what_cannot_be_done_is_said_with_the_remedy() {
     sweep(&room, "coulomb_fc", &only_x, "coulomb");
     let stored = "has not stored the density of `xy`, only of x";
     for (line, words) in [
-        (
-            "plot run detect.floor=0.1",
-            &["`detect.floor` cannot be set"][..],
-        ),
-        (
-            "detect run sweep.points=5",
-            &["`detect.…`, `locate.…`, `figures.…`"],
-        ),
-        (
-            "detect run detect.flor=0.1",
-            &["--set:1", "did you mean `floor`?"],
-        ),
-        (
-            "detect run detect.floor=2",
-            &["`detect.floor` cannot be `2`"],
-        ),
+        ("plot run detect.floor=0.1", &["`detect.floor` cannot be set"][..]),
+        ("detect run sweep.points=5", &["`detect.…`, `locate.…`, `figures.…`"]),
+        ("detect run detect.flor=0.1", &["--set:1", "did you mean `floor`?"]),
+        ("detect run detect.floor=2", &["`detect.floor` cannot be `2`"]),
         ("detect run detect.marginals=[\"z\"]", &["no axis", "`x`"]),
-        (
-            "detect coulomb detect.joint=[[\"x\",\"y\"]]",
-            &[stored, "pbif sweep FILE"],
-        ),
+        ("detect coulomb detect.joint=[[\"x\",\"y\"]]", &[stored, "pbif sweep FILE"]),
     ] {
         refused(&room, line, words);
     }

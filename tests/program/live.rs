@@ -144,6 +144,7 @@ fn a_live_page_solves_what_the_library_solves() {
 }
 
 #[test]
+#[rustfmt::skip]
 fn requests_of_a_live_page_are_answered_or_refused_in_words() {
     let served = Served::new();
     let solve = |ticket: u64, rest: &str| {
@@ -179,16 +180,8 @@ fn requests_of_a_live_page_are_answered_or_refused_in_words() {
         true
     );
     for (ticket, rest, says) in [
-        (
-            4,
-            r#""moving":"sigma2","values":{"f_c":0.0,"sigma2":-1.0}"#,
-            "greater than zero",
-        ),
-        (
-            5,
-            r#""moving":"friction","values":{"friction":0.0}"#,
-            "no parameter `friction`",
-        ),
+        (4, r#""moving":"sigma2","values":{"f_c":0.0,"sigma2":-1.0}"#, "greater than zero"),
+        (5, r#""moving":"friction","values":{"friction":0.0}"#, "no parameter `friction`"),
     ] {
         let words = refused(ticket, rest);
         assert!(words.contains(says), "{words}");
@@ -210,6 +203,7 @@ fn requests_of_a_live_page_are_answered_or_refused_in_words() {
 }
 
 #[test]
+#[rustfmt::skip]
 fn the_server_refuses_whoever_is_not_its_page() {
     let served = Served::new();
     let (port, path) = (served.port, served.path());
@@ -240,14 +234,8 @@ fn the_server_refuses_whoever_is_not_its_page() {
     }
     for (headers, code) in [
         ("Content-Type: text/plain\r\nContent-Length: 0", 400),
-        (
-            "Content-Type: application/json\r\nContent-Length: 70000",
-            413,
-        ),
-        (
-            "Content-Type: application/json\r\nSec-Fetch-Site: cross-site",
-            403,
-        ),
+        ("Content-Type: application/json\r\nContent-Length: 70000", 413),
+        ("Content-Type: application/json\r\nSec-Fetch-Site: cross-site", 403),
     ] {
         let request = format!("POST {path}solve HTTP/1.1\r\n{host}\r\n{headers}\r\n\r\n");
         assert_eq!(status(&served.raw(request.as_bytes())), code, "{headers}");
