@@ -12,6 +12,17 @@ impl Numbers {
         z ^ (z >> 31)
     }
 
+    /// A number between two others.
+    pub(crate) fn between(&mut self, from: f64, to: f64) -> f64 {
+        let unit = self.next() as f64 / u64::MAX as f64;
+        from + unit * (to - from)
+    }
+
+    /// The same of three decimals, so that a case can be typed in by hand.
+    pub(crate) fn rounded(&mut self, from: f64, to: f64) -> f64 {
+        (self.between(from, to) * 1000.0).round() / 1000.0
+    }
+
     /// A number below another, and 0 below 0.
     pub(crate) fn below(&mut self, end: usize) -> usize {
         (self.next() % end.max(1) as u64) as usize

@@ -341,8 +341,9 @@ go = { from = "y^2/2 - x^2/2 + x^4/4 < -0.1 and x < 0", to = "y^2/2 - x^2/2 + x^
         there.0, there.1, back.0, back.1
     );
     assert!((there.0 - back.0).abs() <= there.1 + back.1);
-    // Paths by the splitting of a kick between two halves of a step, counted at each other well's bottom.
-    let (step, damping, t) = (0.02, 0.5, 0.06);
+    // Paths by the splitting of a kick between two halves of a step, counted at each other well's bottom: with ω = √2
+    // there, (ω dt)²/12 = 4e-4 is what a step shifts.
+    let (step, damping, t) = (0.05, 0.5, 0.06);
     let keep = f64::exp(-damping * step);
     let kick = (t * (1.0 - keep * keep)).sqrt();
     let (mut count, mut steps) = (0u32, 0u64);
