@@ -92,7 +92,8 @@ fn warnings_of_every_value_are_told_once() {
     let room = Room::new();
     // Values alone: what changes between them is not looked for.
     let few = "method.kind=sgcm method.samples=20 sweep.points=31 cells.x.count=14 cells.y.count=14 \
-               locate.tolerance=1 locate.grid_check=off locate.largest_distance=0.99";
+               locate.tolerance=1 locate.grid_check=off locate.largest_distance=0.99 method.map_step=3 \
+               method.time_step=0.1";
     let line = format!("sweep sweeps/coulomb_fc.toml --out run --quiet figures.formats=[] {few}");
     let text = room.solved(&line).text();
     assert!(text.len() < 3_000, "{} bytes: {text}", text.len());
