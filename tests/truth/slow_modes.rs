@@ -330,8 +330,8 @@ from = 0.5
 to = 0.6
 points = 2
 [cells]
-x = { from = -2.1, to = 2.1, count = 80 }
-y = { from = -1.8, to = 1.8, count = 80 }
+x = { from = -2.1, to = 2.1, count = 56 }
+y = { from = -1.8, to = 1.8, count = 56 }
 [passage]
 go = { from = "y^2/2 - x^2/2 + x^4/4 < -0.1 and x < 0", to = "y^2/2 - x^2/2 + x^4/4 < -0.1 and x > 0", switching = "on" }
 "#,
