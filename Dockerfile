@@ -1,7 +1,11 @@
-# The program alone on a small system: docker build -t pbif . && docker run --rm -v "$PWD:/work" pbif sweep mine.toml
+# The program alone on a small system; runs belong to whoever starts it:
+#     docker build -t pbif --build-arg PBIF_COMMIT="$(git rev-parse HEAD)" .
+#     docker run --rm -u "$(id -u):$(id -g)" -v "$PWD:/work" pbif sweep mine.toml
 FROM rust:1-slim-bookworm AS build
 WORKDIR /pbif
 COPY . .
+# The commit for run.json, as there is no .git here.
+ARG PBIF_COMMIT
 RUN cargo build --release --locked
 
 FROM debian:bookworm-slim

@@ -1,4 +1,4 @@
-//! Numbers that look random and are the same everywhere (splitmix64).
+//! Numbers that look random and are the same everywhere (splitmix64), and numbers with errors.
 
 /// By its seed.
 pub(crate) struct Numbers(pub(crate) u64);
@@ -12,6 +12,17 @@ impl Numbers {
         z ^ (z >> 31)
     }
 
+    /// A number between two others.
+    pub(crate) fn between(&mut self, from: f64, to: f64) -> f64 {
+        let unit = self.next() as f64 / u64::MAX as f64;
+        from + unit * (to - from)
+    }
+
+    /// The same of three decimals, so that a case can be typed in by hand.
+    pub(crate) fn rounded(&mut self, from: f64, to: f64) -> f64 {
+        (self.between(from, to) * 1000.0).round() / 1000.0
+    }
+
     /// A number below another, and 0 below 0.
     pub(crate) fn below(&mut self, end: usize) -> usize {
         (self.next() % end.max(1) as u64) as usize
@@ -22,4 +33,15 @@ impl Numbers {
 pub(crate) fn given(name: &str, otherwise: u64) -> u64 {
     let text = std::env::var(name).ok();
     text.and_then(|text| text.parse().ok()).unwrap_or(otherwise)
+}
+
+/// A number holds an exact one within its stated error, and this error is below `largest`.
+#[track_caller]
+pub(crate) fn assert_holds([value, error]: [f64; 2], exact: f64, largest: f64) {
+    let off = (value - exact).abs();
+    assert!(off <= error, "{value} ± {error:e}, exactly {exact}");
+    assert!(
+        error < largest,
+        "{value} ± {error:e} instead of {largest:e}"
+    );
 }

@@ -12,6 +12,8 @@ use rand_xoshiro::Xoshiro256Plus;
 use rand_xoshiro::rand_core::SeedableRng;
 use rayon::prelude::*;
 
+use super::numbers::Numbers;
+
 /// A model by its equations and the amplitudes of its noises.
 pub(crate) fn model(equations: &[(&str, &str)], noise: &[(&str, &str)]) -> Arc<Model> {
     let names: Vec<&str> = equations.iter().map(|(axis, _)| *axis).collect();
@@ -136,5 +138,58 @@ pub(crate) fn by_trajectories<const Q: usize>(
         let mean = rows.iter().map(|row| row[index]).sum::<f64>() / n;
         let squares: f64 = rows.iter().map(|row| (row[index] - mean).powi(2)).sum();
         (mean, (squares / (n * (n - 1.0))).sqrt())
+    })
+}
+
+/// A linear system of two states that settles.
+pub(crate) struct Linear {
+    /// x' = a x + b y + noise, y' = c x + d y + noise, and the amplitudes of the noises.
+    pub(crate) matrix: [f64; 4],
+    pub(crate) amplitudes: [f64; 2],
+    pub(crate) model: Arc<Model>,
+    /// So many cells on six standard deviations of x and of y to either side.
+    pub(crate) axes: [(f64, f64, usize); 2],
+}
+
+/// An oscillator where the number is even, or two states that relax and drive each other; nothing where one of them
+/// hardly settles.
+pub(crate) fn random_linear(numbers: &mut Numbers, number: u64, cells: usize) -> Option<Linear> {
+    let mut between =
+        |from: f64, to: f64| from + (to - from) * numbers.below(1_000_000) as f64 * 1e-6;
+    let is_oscillator = number.is_multiple_of(2);
+    let matrix = match is_oscillator {
+        true => [0.0, 1.0, -between(0.3, 3.0), -between(0.1, 1.5)],
+        false => [
+            -between(0.4, 2.0),
+            between(-1.5, 1.5),
+            -between(-0.2, 1.5),
+            -between(0.4, 2.0),
+        ],
+    };
+    let of_x = if is_oscillator {
+        0.0
+    } else {
+        between(0.2, 0.8)
+    };
+    let amplitudes = [of_x, between(0.2, 0.8)];
+    let [a, b, c, d] = matrix;
+    let (trace, determinant) = (a + d, a * d - b * c);
+    if determinant < 0.1 {
+        return None;
+    }
+    // Stationary variances: A S + S Aᵀ = -N.
+    let [p, q] = amplitudes.map(|amplitude| amplitude * amplitude);
+    let factor = -1.0 / (2.0 * trace * determinant);
+    let xx = factor * (p * (determinant + d * d) + q * b * b);
+    let yy = factor * (q * (determinant + a * a) + p * c * c);
+    let equations = [[a, b], [c, d]].map(|[x, y]| format!("{x} * x + ({y}) * y"));
+    let words = amplitudes.map(|amplitude| amplitude.to_string());
+    let noise = [("x", words[0].as_str()), ("y", words[1].as_str())];
+    let noise = &noise[usize::from(is_oscillator)..];
+    Some(Linear {
+        matrix,
+        amplitudes,
+        model: model(&[("x", &equations[0]), ("y", &equations[1])], noise),
+        axes: [xx, yy].map(|variance| (-6.0 * variance.sqrt(), 6.0 * variance.sqrt(), cells)),
     })
 }

@@ -1,7 +1,7 @@
 //! Sweep files as text, made ready to run, and what their sweeps find.
 
 use pbif::cancellation::Cancellation;
-use pbif::continuation::{Located, SweepResult};
+use pbif::continuation::{DensitySource as _, Located, Solution, SweepResult};
 use pbif::sweep_file::{Settings, Sweep, SweepFile};
 
 /// The settings of a file with this text, with keys set by words `key=value`.
@@ -21,6 +21,15 @@ pub(crate) fn swept(text: &str, words: &str) -> (Sweep, SweepResult) {
     let sweep = prepared(text, words);
     let result = sweep.run(&Cancellation::new(), &mut ()).unwrap();
     (sweep, result)
+}
+
+/// One value of a file's range solved alone; the last one, where none is given.
+pub(crate) fn solved(text: &str, words: &str, value: Option<f64>) -> (Sweep, Solution<'static>) {
+    let (sweep, never) = (prepared(text, words), Cancellation::new());
+    let value = value.unwrap_or(sweep.problem.family().ends().1);
+    let source = sweep.source(&never).unwrap();
+    let solution = source.open(&never).solve(value).unwrap().detached();
+    (sweep, solution)
 }
 
 /// The rows of an observable.

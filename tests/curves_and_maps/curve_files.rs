@@ -10,6 +10,7 @@ fn with_curve(box_of_a: &str) -> String {
 }
 
 #[test]
+#[rustfmt::skip]
 fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
     let room = Room::new();
     room.write("cusp.toml", CUSP);
@@ -34,27 +35,12 @@ fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
     room.done(&fold("--second a --from 0.2 --to 1.6 --step 0.1"));
     assert!(room.holds("run/curves/PB1-a/previous/1/curves.csv"));
     for (more, words) in [
-        (
-            "--row PB7 --second a --from 0 --to 2",
-            "no P-bifurcation `PB7`",
-        ),
+        ("--row PB7 --second a --from 0 --to 2", "no P-bifurcation `PB7`"),
         ("--second b --from 0 --to 2", "no parameter `b`"),
-        (
-            "--second h --from 0 --to 2",
-            "the second parameter of the curve is the swept one",
-        ),
-        (
-            "--second a --from 1.2 --to 2",
-            "the sweep holds `a` at 1, and the box of the curves goes from 1.2 to 2.0",
-        ),
-        (
-            "--second a --from 0.2 --to 1e308",
-            "from 0.2 to 1e308: so long a side leaves no digits",
-        ),
-        (
-            "--second a --from 1 --to 1",
-            "the box of the curves goes from 1 to 1 along `a`",
-        ),
+        ("--second h --from 0 --to 2", "the second parameter of the curve is the swept one"),
+        ("--second a --from 1.2 --to 2", "the sweep holds `a` at 1, and the box of the curves goes from 1.2 to 2.0"),
+        ("--second a --from 0.2 --to 1e308", "from 0.2 to 1e308: so long a side leaves no digits"),
+        ("--second a --from 1 --to 1", "the box of the curves goes from 1 to 1 along `a`"),
         ("--second a --from x --to 1", "allowed: a number"),
     ] {
         room.refused(&fold(more), &[words]);
@@ -66,6 +52,7 @@ fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
 }
 
 #[test]
+#[rustfmt::skip]
 fn a_sweep_file_names_the_curves_that_its_sweep_is_followed_by() {
     let room = Room::new();
     let corners = "from = 1.6, to = 0.2, first_from = -0.7, first_to = 0.7";
@@ -86,22 +73,13 @@ fn a_sweep_file_names_the_curves_that_its_sweep_is_followed_by() {
     let outside = "the sweep holds `a` at 1, and the box of the curves goes from 0.2 to 0.9";
     for (setting, words) in [
         ("curve.parameter=b", "no parameter `b`"),
-        (
-            "curve.parameter=h",
-            "the second parameter of the curve is the swept one",
-        ),
+        ("curve.parameter=h", "the second parameter of the curve is the swept one"),
         ("curve.from=0.9", outside),
         ("curve.first_to=-0.7", "goes from -0.7 to -0.7 along `h`"),
         ("curve.step=0.5", "from 0.0001 to 0.25"),
-        (
-            "curve.rows=[\"PB7\"]",
-            "the sweep has no P-bifurcation `PB7`",
-        ),
+        ("curve.rows=[\"PB7\"]", "the sweep has no P-bifurcation `PB7`"),
         ("curve.second=a", "unknown key `curve.second`"),
-        (
-            "map.parameter=a",
-            "a file has `[map]` or `[curve]`, not both",
-        ),
+        ("map.parameter=a", "a file has `[map]` or `[curve]`, not both"),
     ] {
         room.refused(&format!("{sweep} {setting}"), &[words]);
     }

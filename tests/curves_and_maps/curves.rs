@@ -7,7 +7,7 @@ use pbif::continuation::curve::{
     Curve, CurveError, CurveOptions, CurveStart, EndReason, Plane, follow,
 };
 
-use super::support::{assert_on, curve, ends, followed, off_the_fold, row, stepping};
+use super::support::{assert_on, curve, curve_of, ends, followed, off_the_fold, row, stepping};
 use crate::common::sweeps::{prepared, swept};
 
 /// Additive noise: peaks of the density are zeros of the drift, and two of them fold where 27 h² = 4 a³.
@@ -62,6 +62,10 @@ detect = { marginals = [], joint = [["x", "y"]] }
 locate = { relative_tolerance = 1e-3 }
 "#;
 
+/// Rows of x by their indicators.
+const FOLD: (&str, &str) = ("x", "slope at the inflection");
+const SPLIT: (&str, &str) = ("x", "curvature at the centre");
+
 fn all_located(curve: &Curve) -> bool {
     let mut points = curve.points.iter();
     points.all(|point| point.status() == BifurcationStatus::Located)
@@ -69,14 +73,8 @@ fn all_located(curve: &Curve) -> bool {
 
 #[test]
 fn the_fold_of_a_cusp_is_followed_within_its_error_whichever_parameter_is_first() {
-    let (sweep, result) = swept(CUSP, "");
-    let plane = Plane::new(("h", -0.7, 0.7), ("a", 0.2, 1.6)).unwrap();
-    let first = curve(
-        &sweep,
-        row(&result, "x", "slope at the inflection"),
-        &plane,
-        1.0,
-    );
+    let plane = (("h", -0.7, 0.7), ("a", 0.2, 1.6));
+    let first = curve_of(&swept(CUSP, ""), FOLD, plane, 1.0);
     assert_on(&first, 1e-4, |values| off_the_fold(values, [1.4, 1.4]));
     // At the lower end a = 0.2; at the upper one h = 0.7.
     assert_eq!(ends(&first), [&EndReason::Border(1), &EndReason::Border(0)]);
@@ -115,14 +113,8 @@ fn the_fold_of_a_cusp_is_followed_within_its_error_whichever_parameter_is_first(
 
     // The same from a sweep over the other parameter, begun elsewhere.
     let other = "sweep.parameter=a sweep.from=0.5 sweep.to=1.2 system.parameters.h=0.2";
-    let (sweep, result) = swept(&CUSP.replace("a = 1.0, ", ""), other);
-    let plane = Plane::new(("a", 0.2, 1.6), ("h", -0.7, 0.7)).unwrap();
-    let second = curve(
-        &sweep,
-        row(&result, "x", "slope at the inflection"),
-        &plane,
-        0.2,
-    );
+    let other = swept(&CUSP.replace("a = 1.0, ", ""), other);
+    let second = curve_of(&other, FOLD, (plane.1, plane.0), 0.2);
     assert_on(&second, 1e-4, |[a, h]| off_the_fold([h, a], [1.4, 1.4]));
     let both =
         [&first, &second].map(|one| one.points.last().unwrap().arclength - one.points[0].arclength);
@@ -131,14 +123,8 @@ fn the_fold_of_a_cusp_is_followed_within_its_error_whichever_parameter_is_first(
 
 #[test]
 fn the_cusp_in_which_two_folds_meet_is_located() {
-    let (sweep, result) = swept(CUSP, "");
-    let plane = Plane::new(("h", -0.7, 0.7), ("a", -0.4, 1.0)).unwrap();
-    let curve = curve(
-        &sweep,
-        row(&result, "x", "slope at the inflection"),
-        &plane,
-        1.0,
-    );
+    let plane = (("h", -0.7, 0.7), ("a", -0.4, 1.0));
+    let curve = curve_of(&swept(CUSP, ""), FOLD, plane, 1.0);
     assert_eq!(ends(&curve), [&EndReason::Cusp, &EndReason::Border(1)]);
     assert_eq!(curve.ends[0].label, "CP1");
     let cusp = &curve.points[0];
@@ -151,14 +137,8 @@ fn the_cusp_in_which_two_folds_meet_is_located() {
 
 #[test]
 fn a_closed_curve_comes_back_to_where_it_began() {
-    let (sweep, result) = swept(CIRCLE, "");
-    let plane = Plane::new(("u", -1.2, 1.3), ("v", -1.3, 1.2)).unwrap();
-    let curve = curve(
-        &sweep,
-        row(&result, "x", "curvature at the centre"),
-        &plane,
-        0.3,
-    );
+    let plane = (("u", -1.2, 1.3), ("v", -1.3, 1.2));
+    let curve = curve_of(&swept(CIRCLE, ""), SPLIT, plane, 0.3);
     assert_on(&curve, 1e-4, |[u, v]| (u * u + v * v - 1.0) / (2.0 * 2.5));
     assert_eq!(ends(&curve), [&EndReason::Closed]);
     let length = curve.points.last().unwrap().arclength * 2.5;
@@ -172,7 +152,7 @@ fn a_closed_curve_comes_back_to_where_it_began() {
 fn sweeps_over_one_parameter_lie_in_the_band_of_coulomb_friction() {
     let (sweep, result) = swept(COULOMB, "");
     let plane = Plane::new(("f_c", -0.03, 0.01), ("sigma2", 0.03, 0.07)).unwrap();
-    let found = row(&result, "x", "curvature at the centre");
+    let found = row(&result, SPLIT.0, SPLIT.1);
     let merger = curve(&sweep, found, &plane, 0.05);
     assert_eq!(
         ends(&merger),
@@ -185,7 +165,7 @@ fn sweeps_over_one_parameter_lie_in_the_band_of_coulomb_friction() {
         ("0.07", merger.points.last().unwrap()),
     ] {
         let (_, result) = swept(COULOMB, &format!("system.parameters.sigma2={sigma2}"));
-        let alone = row(&result, "x", "curvature at the centre");
+        let alone = row(&result, SPLIT.0, SPLIT.1);
         // Both are on the border; the curve is steep there, so that its band along f_c is about as wide as across.
         let off = (alone.value - point.values[0]).abs();
         assert!(
@@ -198,7 +178,7 @@ fn sweeps_over_one_parameter_lie_in_the_band_of_coulomb_friction() {
     // Between them f_c is nearly linear in σ.
     for sigma2 in [0.04, 0.06_f64] {
         let (_, result) = swept(COULOMB, &format!("system.parameters.sigma2={sigma2}"));
-        let alone = row(&result, "x", "curvature at the centre");
+        let alone = row(&result, SPLIT.0, SPLIT.1);
         let after = merger
             .points
             .partition_point(|point| point.values[1] < sigma2);
@@ -245,10 +225,8 @@ fn sweeps_over_one_parameter_lie_in_the_band_of_coulomb_friction() {
 #[test]
 fn with_a_linear_spring_friction_at_the_change_is_proportional_to_sigma_from_either_parameter() {
     let linear = COULOMB.replace("mu = 0.05", "mu = 0.0");
-    let (sweep, result) = swept(&linear, "");
-    let found = row(&result, "x", "curvature at the centre");
-    let plane = Plane::new(("f_c", -0.03, 0.01), ("sigma2", 0.03, 0.07)).unwrap();
-    let first = curve(&sweep, found, &plane, 0.05);
+    let plane = (("f_c", -0.03, 0.01), ("sigma2", 0.03, 0.07));
+    let first = curve_of(&swept(&linear, ""), SPLIT, plane, 0.05);
     let begins = &first.points[first.start];
     // States scale with σ, and forces with them.
     let ratio = begins.values[0] / begins.values[1].sqrt();
@@ -265,13 +243,9 @@ fn with_a_linear_spring_friction_at_the_change_is_proportional_to_sigma_from_eit
     let held = first.points[first.points.len() / 4].values;
     let other = linear.replace(", sigma2 = 0.05", "");
     let along = "sweep.parameter=sigma2 sweep.from=0.03 sweep.to=0.07";
-    let (sweep, result) = swept(
-        &other,
-        &format!("{along} system.parameters.f_c={}", held[0]),
-    );
-    let found = row(&result, "x", "curvature at the centre");
-    let plane = Plane::new(("sigma2", 0.03, 0.07), ("f_c", -0.03, 0.01)).unwrap();
-    let second = curve(&sweep, found, &plane, held[0]);
+    let held_there = format!("{along} system.parameters.f_c={}", held[0]);
+    let plane = (("sigma2", 0.03, 0.07), ("f_c", -0.03, 0.01));
+    let second = curve_of(&swept(&other, &held_there), SPLIT, plane, held[0]);
     assert_eq!(
         ends(&second),
         [&EndReason::Border(0), &EndReason::Border(0)]
@@ -303,34 +277,25 @@ fn split_of_x() -> f64 {
 
 #[test]
 fn curves_of_energy_dependent_damping_are_those_of_its_exact_density() {
-    let (sweep, result) = swept(RAYLEIGH, "");
-    let plane = Plane::new(("a", -0.02, 0.06), ("sigma2", 0.01, 0.04)).unwrap();
-    let split = curve(
-        &sweep,
-        row(&result, "x", "curvature at the centre"),
-        &plane,
-        0.02,
-    );
+    let swept = swept(RAYLEIGH, "");
+    let plane = (("a", -0.02, 0.06), ("sigma2", 0.01, 0.04));
+    let split = curve_of(&swept, SPLIT, plane, 0.02);
     let c = split_of_x();
     assert_on(&split, 1e-4, |[a, sigma2]| {
         let exact = c * (0.1 * sigma2).sqrt();
         let slope = 0.5 * exact / sigma2 * 0.03 / 0.08;
         (a - exact) / 0.08 / 1.0_f64.hypot(slope)
     });
-    let plane = Plane::new(("a", -0.02, 0.06), ("b", 0.05, 0.2)).unwrap();
-    let opens = curve(
-        &sweep,
-        row(&result, "xy", "lower curvature at the centre"),
-        &plane,
-        0.1,
-    );
+    let crater = ("xy", "lower curvature at the centre");
+    let plane = (("a", -0.02, 0.06), ("b", 0.05, 0.2));
+    let opens = curve_of(&swept, crater, plane, 0.1);
     assert_on(&opens, 1e-4, |[a, _]| a / 0.08);
 }
 
 #[test]
 fn a_start_outside_of_the_box_and_another_plane_are_refused() {
     let (sweep, result) = swept(CUSP, "");
-    let found = row(&result, "x", "slope at the inflection");
+    let found = row(&result, FOLD.0, FOLD.1);
     let start = CurveStart::from_row(found, 1.0, sweep.problem.subject()).unwrap();
     let never = Cancellation::new();
     let refused = |solved: &Plane, plane: &Plane, start: &CurveStart| {
@@ -370,7 +335,7 @@ fn a_start_outside_of_the_box_and_another_plane_are_refused() {
 #[test]
 fn a_cancelled_curve_says_so() {
     let (sweep, result) = swept(CUSP, "");
-    let found = row(&result, "x", "slope at the inflection");
+    let found = row(&result, FOLD.0, FOLD.1);
     let start = CurveStart::from_row(found, 1.0, sweep.problem.subject()).unwrap();
     let plane = Plane::new(("h", -0.7, 0.7), ("a", 0.2, 1.6)).unwrap();
     let cancellation = Cancellation::new();
@@ -447,14 +412,9 @@ fn sampled_curves_hold_the_exact_one_in_their_bands_or_say_that_samples_are_few(
 
 #[test]
 fn the_fold_of_a_joint_density_is_followed_along_that_of_the_force() {
-    let (sweep, result) = swept(TILTED, "");
-    let plane = Plane::new(("h", 0.1, 0.6), ("a", 0.7, 1.2)).unwrap();
-    let curve = curve(
-        &sweep,
-        row(&result, "xy", "slope at the shoulder"),
-        &plane,
-        1.0,
-    );
+    let plane = (("h", 0.1, 0.6), ("a", 0.7, 1.2));
+    let shoulder = ("xy", "slope at the shoulder");
+    let curve = curve_of(&swept(TILTED, ""), shoulder, plane, 1.0);
     assert_eq!(ends(&curve), [&EndReason::Border(1), &EndReason::Border(1)]);
     assert_on(&curve, 0.02, |values| off_the_fold(values, [0.5, 0.5]));
     assert!(curve.points.iter().all(|point| point.error < 0.02));

@@ -44,6 +44,7 @@ fn a_map_in_shards_is_the_map_in_one_piece() {
 }
 
 #[test]
+#[rustfmt::skip]
 fn the_program_makes_maps_and_says_what_is_wrong_with_them() {
     let room = Room::new();
     room.write("cusp.toml", CUSP);
@@ -96,14 +97,8 @@ fn the_program_makes_maps_and_says_what_is_wrong_with_them() {
     room.done(&format!("{sweep} --resume"))
         .says(&["the map is complete"]);
     for (more, words) in [
-        (
-            "--resume map.points=6",
-            ["is of another sweep", "map.points"],
-        ),
-        (
-            "--shard 1/20",
-            ["from 1 to 10", "along its second parameter"],
-        ),
+        ("--resume map.points=6", ["is of another sweep", "map.points"]),
+        ("--shard 1/20", ["from 1 to 10", "along its second parameter"]),
         ("map.parameter=h", ["is the swept one, `h`", "`sigma2`"]),
         ("map.parameter=b", ["no parameter `b`", ""]),
         ("map.to=-0.4", ["from -0.4 to -0.4 along `a`", ""]),
@@ -116,6 +111,7 @@ fn the_program_makes_maps_and_says_what_is_wrong_with_them() {
 }
 
 #[test]
+#[rustfmt::skip]
 fn what_sweeps_locate_is_marked_in_the_plane_that_they_lie_in() {
     let room = Room::new();
     room.write("map.toml", CUSP);
@@ -161,23 +157,11 @@ fn what_sweeps_locate_is_marked_in_the_plane_that_they_lie_in() {
 
     // What does not lie in the plane is refused.
     for (settings, words) in [
-        (
-            "system.parameters.sigma2=0.2",
-            "it has sigma2 = 0.2, and the plane has sigma2 = 0.1",
-        ),
-        (
-            "system.parameters.a=1.5",
-            "it holds a = 1.5, and the box goes from -0.4 to 1",
-        ),
+        ("system.parameters.sigma2=0.2", "it has sigma2 = 0.2, and the plane has sigma2 = 0.1"),
+        ("system.parameters.a=1.5", "it holds a = 1.5, and the box goes from -0.4 to 1"),
         ("sweep.from=0.6 sweep.to=0.7", "its h goes from 0.6 to 0.7"),
-        (
-            "sweep.parameter=sigma2 sweep.from=0.1 sweep.to=0.2",
-            "it sweeps sigma2",
-        ),
-        (
-            "'system.equations.x=\"h + a x - x^5\"'",
-            "its equations are not those of the plane",
-        ),
+        ("sweep.parameter=sigma2 sweep.from=0.1 sweep.to=0.2", "it sweeps sigma2"),
+        ("'system.equations.x=\"h + a x - x^5\"'", "its equations are not those of the plane"),
     ] {
         line("other", &format!("{settings} sweep.points=3"));
         room.refused(&format!("{draw} --with other"), &[words]);

@@ -53,6 +53,17 @@ pub(super) fn curve(sweep: &Sweep, row: &Located, plane: &Plane, held: f64) -> C
     followed(sweep, plane, &start, &CurveOptions::default()).unwrap()
 }
 
+/// The same of the row of an observable that an indicator of this name located.
+pub(super) fn curve_of(
+    (sweep, result): &(Sweep, SweepResult),
+    (observable, method): (&str, &str),
+    (first, second): (Side<'_>, Side<'_>),
+    held: f64,
+) -> Curve {
+    let plane = Plane::new(first, second).unwrap();
+    curve(sweep, row(result, observable, method), &plane, held)
+}
+
 pub(super) fn stepping(largest_step: f64) -> CurveOptions {
     CurveOptions {
         largest_step,

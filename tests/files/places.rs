@@ -204,19 +204,12 @@ fn limited(room: &Room, limit: &str, line: &str) -> Printed {
 }
 
 #[test]
+#[rustfmt::skip]
 fn limits_of_a_process_are_told() {
     let room = swept();
     for (limit, line, words) in [
-        (
-            "-f 8",
-            format!("{SWEEP} --out b"),
-            ["cannot write", "File too large"],
-        ),
-        (
-            "-f 2",
-            "export a --out a.nc".to_owned(),
-            ["cannot write", "ile too large"],
-        ),
+        ("-f 8", format!("{SWEEP} --out b"), ["cannot write", "File too large"]),
+        ("-f 2", "export a --out a.nc".to_owned(), ["cannot write", "ile too large"]),
         (
             "-v 1000000",
             "sweep sweeps/coulomb_fc.toml --out b cells.x={from=-5,to=5,count=700} cells.y={from=-5,to=5,count=700}".to_owned(),

@@ -18,6 +18,7 @@ fn unfinish(room: &Room, run: &str) {
 }
 
 #[test]
+#[rustfmt::skip]
 fn runs_are_listed_with_their_versions_and_shards_and_shown() {
     let room = Room::new();
     room.refused("list", &["`output` is not a folder", "pbif sweep FILE"]);
@@ -26,15 +27,9 @@ fn runs_are_listed_with_their_versions_and_shards_and_shown() {
     sweep(&room, "--shard 1/2");
     let listed = room.done("list").text();
     for (name, words) in [
-        (
-            "output/bistable",
-            ["bistable: a -1 to 1", "complete, ", "located"],
-        ),
+        ("output/bistable", ["bistable: a -1 to 1", "complete, ", "located"]),
         ("output/bistable/previous/1", ["complete, ", "located", ""]),
-        (
-            "output/bistable/shards/1-of-2",
-            ["shard 1/2", "complete", ""],
-        ),
+        ("output/bistable/shards/1-of-2", ["shard 1/2", "complete", ""]),
     ] {
         let is_it = |line: &&str| line.split_whitespace().next() == Some(name);
         let line = listed.lines().find(is_it);

@@ -1,158 +1,24 @@
-//! Models made of typed equations: twins of built-in ones, both readings of multiplicative noise, and what is refused.
+//! Models made of typed equations: both readings of multiplicative noise, and what is refused.
 
 use std::sync::Arc;
 
 use pbif::formula::language::Fault;
-use pbif::generator::{GeneratorOptions, assemble, cell_masses};
-use pbif::space::{Axis, CellSpace};
-use pbif::stationary::generator::{RateMethod, RateOptions, RateSolver};
 use pbif::system::{
-    FormulaPlace, Interpretation, Model, ParameterDescription, ParameterRange, System, TypedModel,
-    TypedModelError, contract, registry,
+    FormulaPlace, Interpretation, ParameterDescription, ParameterRange, System, TypedModel,
+    TypedModelError, contract,
 };
 
-/// A model as text that stands for a built-in one: its axes and parameters.
-fn like(twin: &Model) -> TypedModel {
-    TypedModel::new(
-        format!("typed_{}", twin.name),
-        twin.title.as_str(),
-        twin.axes.clone(),
-    )
-    .with_parameters(twin.parameters.clone())
-}
+use crate::common::steady::even_cells;
 
-fn oscillator(twin: &Model, friction: &str) -> TypedModel {
-    let force = format!("-kappa y - x (alpha + mu x^2) - {friction}");
-    like(twin)
-        .with_equation("x", "y")
-        .with_equation("y", force)
-        .with_noise("y", ["sqrt(sigma2)"])
-}
-
-/// A built-in model, its twin as text, values, and half-widths and counts of a small grid.
-struct Twins {
-    built_in: Arc<Model>,
-    typed: Arc<Model>,
-    values: Vec<(&'static str, f64)>,
-    grid: Vec<(f64, usize)>,
-}
-
-fn twins() -> [Twins; 3] {
-    let coulomb = registry::find("coulomb").unwrap();
-    let dahl = registry::find("dahl").unwrap();
-    let bistable = registry::find("bistable").unwrap();
-    [
-        Twins {
-            typed: oscillator(&coulomb, "f_c sign(y)").build().unwrap(),
-            built_in: coulomb,
-            values: vec![("kappa", 0.2), ("mu", 0.3), ("f_c", 0.15), ("sigma2", 0.2)],
-            grid: vec![(2.5, 30); 2],
-        },
-        Twins {
-            typed: oscillator(&dahl, "λ z")
-                .with_equation("z", "y - slip abs(y) z")
-                .with_definition("slip", "lambda/f_c")
-                .with_bounds("z", "-f_c/lambda", "f_c/lambda")
-                .build()
-                .unwrap(),
-            built_in: dahl,
-            values: vec![
-                ("kappa", 0.3),
-                ("mu", 0.3),
-                ("lambda", 0.5),
-                ("f_c", 0.25),
-                ("sigma2", 0.2),
-            ],
-            grid: vec![(2.5, 16), (2.5, 16), (0.5, 10)],
-        },
-        Twins {
-            typed: like(&bistable)
-                .with_equation("x", "a x - x³")
-                .with_noise("x", ["sqrt(sigma2)"])
-                .build()
-                .unwrap(),
-            built_in: bistable,
-            values: vec![("a", 0.7), ("sigma2", 0.5)],
-            grid: vec![(2.5, 100)],
-        },
-    ]
-}
-
-/// Numbers in [-1, 1), the same for every run.
-fn random() -> impl FnMut() -> f64 {
-    let mut state = 7_u64;
-    move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-}
-
-/// Steady masses of the cells, Σ = 1.
-fn masses(system: &dyn System, grid: &[(f64, usize)]) -> Vec<f64> {
-    let axes = grid.iter();
-    let axes = axes.map(|&(half, count)| Axis::uniform(-half, half, count).unwrap());
-    let space = CellSpace::new(axes.collect()).unwrap();
-    let generator = assemble(system, &space, &GeneratorOptions::default()).unwrap();
-    let options = RateOptions {
-        method: Some(RateMethod::Lu),
-        tolerance: 1e-14,
-        ..RateOptions::default()
-    };
-    let mut solver = RateSolver::new(space.clone(), options);
-    let steady = solver.solve(&generator.matrix, &generator.escape, None);
-    cell_masses(system, &space, &steady.unwrap().mass)
+/// Steady masses of the cells of one axis, Σ = 1.
+fn masses(system: &dyn System, (half, count): (f64, usize)) -> Vec<f64> {
+    let space = even_cells(&[(-half, half, count)]);
+    super::twins::masses(system, &space)
 }
 
 fn total_variation(one: &[f64], other: &[f64]) -> f64 {
     let pairs = one.iter().zip(other);
     0.5 * pairs.map(|(a, b)| (a - b).abs()).sum::<f64>()
-}
-
-#[test]
-fn twins_have_the_same_drift_noise_and_declarations() {
-    let mut random = random();
-    for twins in twins() {
-        let name = &twins.typed.name;
-        let built_in = twins.built_in.system_with(&twins.values).unwrap();
-        let typed = twins.typed.system_with(&twins.values).unwrap();
-        for _ in 0..1000 {
-            let state: Vec<f64> = (0..built_in.dimension()).map(|_| 3.0 * random()).collect();
-            let drifts = built_in.drift_at(0.0, &state).into_iter();
-            for (expected, found) in drifts.zip(typed.drift_at(0.0, &state)) {
-                // A few roundings of terms that are at most about 10.
-                assert!((expected - found).abs() < 2e-14, "{name} at {state:?}");
-            }
-        }
-        let noises = |system: &dyn System| {
-            let noises = system.noises().iter();
-            noises
-                .map(|noise| (noise.axis, noise.additive()))
-                .collect::<Vec<_>>()
-        };
-        assert_eq!(noises(&*typed), noises(&*built_in), "{name}");
-        assert_eq!(typed.facts(), built_in.facts(), "{name}");
-        let values = twins.typed.values(&twins.values).unwrap();
-        let ranges = vec![(-2.0, 2.0); built_in.dimension()];
-        assert_eq!(
-            contract::verify_model(&twins.typed, &values, &ranges),
-            Ok(())
-        );
-    }
-}
-
-#[test]
-fn twins_have_the_same_density() {
-    for twins in twins() {
-        let built_in = twins.built_in.system_with(&twins.values).unwrap();
-        let typed = twins.typed.system_with(&twins.values).unwrap();
-        let distance = total_variation(
-            &masses(&*built_in, &twins.grid),
-            &masses(&*typed, &twins.grid),
-        );
-        assert!(distance < 1e-12, "{}: {distance:e}", twins.typed.name);
-    }
 }
 
 /// dx = (x - x³) dt + (multiplicative and additive noise), read in one way.
@@ -182,9 +48,9 @@ fn the_readings_of_multiplicative_noise_differ_by_the_drift_correction_and_give_
         let difference = stratonovich.drift_at(0.0, &[x])[0] - ito.drift_at(0.0, &[x])[0];
         assert!((difference - 0.245 * x).abs() < 1e-14);
     }
-    let grid = [(3.5, 400)];
-    let found = masses(&*stratonovich, &grid);
-    let distance = total_variation(&found, &masses(&*corrected, &grid));
+    let grid = (3.5, 400);
+    let found = masses(&*stratonovich, grid);
+    let distance = total_variation(&found, &masses(&*corrected, grid));
     assert!(distance < 1e-12, "{distance:e}");
     // With D = s²x² + 1/4: p ∝ D^(-θ) exp(∫ 2(x - x³)/D dx), θ = 1/2 for Stratonovich and 1 for Itô, where
     // ∫ 2(x - x³)/D dx = (1/s² + 1/(4s⁴)) ln D - x²/s².
@@ -205,7 +71,7 @@ fn the_readings_of_multiplicative_noise_differ_by_the_drift_correction_and_give_
             .collect();
         let total: f64 = exact.iter().sum();
         let exact: Vec<f64> = exact.iter().map(|mass| mass / total).collect();
-        let distance = total_variation(&masses(&**system, &grid), &exact);
+        let distance = total_variation(&masses(&**system, grid), &exact);
         assert!(distance < 1e-5, "{theta}: {distance:e}");
     }
 }

@@ -228,18 +228,13 @@ fn files_of_a_room_do_not_use_each_other_in_circles() {
 }
 
 #[test]
+#[rustfmt::skip]
 fn the_reader_sees_circles_through_a_list_of_modules() {
     let files = |user: &str| -> Files {
         let all = [
             ("a/mod.rs", "mod kinds;\nmod user;"),
-            (
-                "a/kinds/mod.rs",
-                "mod one;\nconst ALL: [Kind; 1] = [one::KIND];",
-            ),
-            (
-                "a/kinds/one.rs",
-                "use crate::a::user::Page;\nuse super::Kind;",
-            ),
+            ("a/kinds/mod.rs", "mod one;\nconst ALL: [Kind; 1] = [one::KIND];"),
+            ("a/kinds/one.rs", "use crate::a::user::Page;\nuse super::Kind;"),
             ("a/kinds/two.rs", "pub struct Two;"),
             ("a/user.rs", user),
         ];

@@ -14,6 +14,8 @@ pub(crate) struct Case {
     pub(crate) potential: Box<dyn Fn(f64, f64) -> f64>,
     /// Cells an axis.
     pub(crate) count: usize,
+    /// The ranges beyond which the density is nothing, found once.
+    reach: [(f64, f64); 2],
 }
 
 /// The nodes on [-½, ½] and the weights of the three-point Gauss-Legendre rule.
@@ -27,6 +29,13 @@ const GAUSS: [(f64, f64); 3] = [
 pub(crate) const DEPTH: f64 = 25.0;
 
 pub(crate) fn drawn(seed: u64) -> Case {
+    let mut case = of_seed(seed);
+    case.reach = ranges(&*case.potential, DEPTH);
+    case
+}
+
+fn of_seed(seed: u64) -> Case {
+    let reach = [(0.0, 0.0); 2];
     let mut dice = Xoshiro256Plus::seed_from_u64(seed);
     let mut between = |from: f64, to: f64| {
         let unit = (dice.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
@@ -51,6 +60,7 @@ pub(crate) fn drawn(seed: u64) -> Case {
                     (0.5 * y * y - 0.5 * a * x * x + 0.25 * b * x.powi(4) - c * x) / d
                 }),
                 count,
+                reach,
             }
         }
         1 => {
@@ -81,6 +91,7 @@ pub(crate) fn drawn(seed: u64) -> Case {
                         / d
                 }),
                 count,
+                reach,
             }
         }
         _ => {
@@ -95,6 +106,7 @@ pub(crate) fn drawn(seed: u64) -> Case {
                     (-a * energy + 0.5 * b * energy * energy) / d
                 }),
                 count,
+                reach,
             }
         }
     }
@@ -142,7 +154,7 @@ const STEPS: u32 = 600;
 
 /// Integrals over the plane of the density, not normalised, times numbers.
 pub(crate) fn integral<const N: usize>(case: &Case, of: impl Fn(f64, f64) -> [f64; N]) -> [f64; N] {
-    let ends = ranges(&*case.potential, DEPTH);
+    let ends = case.reach;
     let [dx, dy] = ends.map(|(from, to)| (to - from) / f64::from(STEPS));
     let mut sums = [0.0; N];
     for (i, j) in (0..=STEPS).flat_map(|i| (0..=STEPS).map(move |j| (i, j))) {
@@ -170,7 +182,7 @@ pub(crate) fn density_at(case: &Case, observable: Observable, place: &[f64]) -> 
     let Observable::Marginal(axis) = observable else {
         return (-(case.potential)(place[0], place[1])).exp();
     };
-    let (from, to) = ranges(&*case.potential, DEPTH)[1 - axis];
+    let (from, to) = case.reach[1 - axis];
     let step = (to - from) / f64::from(STEPS);
     let terms = (0..=STEPS).map(|number| {
         let other = from + step * f64::from(number);

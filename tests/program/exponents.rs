@@ -1,5 +1,6 @@
 //! The largest Lyapunov exponent of a fixed point from a sweep file to rows of tables; and points that are none.
 
+use crate::common::numbers::assert_holds;
 use crate::common::room::{Room, assert_says};
 
 const OSCILLATOR: &str = r#"title = "exponents"
@@ -96,34 +97,22 @@ draw = []
         room.run(&format!("sweep a.toml --out {reading}"));
         let table = room.table(&format!("{reading}/bifurcations.csv"));
         let row = table.0.iter().find(|row| &row["label"] == "DB1").unwrap();
-        let [value, error] = row.numbers(["value", "error"]);
-        assert!(
-            (value - zero).abs() <= error && error < 1e-14,
-            "{value} ± {error}"
-        );
+        assert_holds(row.numbers(["value", "error"]), zero, 1e-14);
     }
 }
 
 #[test]
+#[rustfmt::skip]
 fn what_has_no_exponent_is_refused_with_its_place_and_a_remedy() {
     let room = Room::new();
     room.write("a.toml", OSCILLATOR);
     for (set, words) in [
-        (
-            "exponent.at.x=1",
-            "x = 1, y = 0 is no fixed point at b = -0.1: along y the drift is -2",
-        ),
+        ("exponent.at.x=1", "x = 1, y = 0 is no fixed point at b = -0.1: along y the drift is -2"),
         ("exponent.at.z=0", "`z` is no coordinate of the state"),
         ("exponent.kind=all", "cannot be `all`"),
         ("system.noise.y=0.1", "the amplitude of the noise 0.1"),
-        (
-            "system.equations.y=-x+b*y-sign(y)",
-            "has no derivative at x = 0, y = 0",
-        ),
-        (
-            "system.noise.kind=ornstein-uhlenbeck system.parameters.tau=1",
-            "white noise alone",
-        ),
+        ("system.equations.y=-x+b*y-sign(y)", "has no derivative at x = 0, y = 0"),
+        ("system.noise.kind=ornstein-uhlenbeck system.parameters.tau=1", "white noise alone"),
     ] {
         room.refused(&format!("sweep a.toml {set}"), &[words]);
     }
@@ -224,25 +213,17 @@ fn along_a_density_linear_equations_are_exact_and_their_box_and_cells_do_not_mat
 }
 
 #[test]
+#[rustfmt::skip]
 fn what_has_no_exponent_along_its_density_is_refused_with_a_remedy() {
     let room = Room::new();
     let file = OSCILLATOR.replace("fixed-point", "largest");
     room.write("a.toml", file.replace("s x", "s"));
     for (set, words) in [
-        (
-            "system.equations.y=-x+b*y-x^3-sign(y)",
-            "is not smooth everywhere",
-        ),
+        ("system.equations.y=-x+b*y-x^3-sign(y)", "is not smooth everywhere"),
         ("exponent.at.x=0", "names a fixed point"),
         ("method.kind=monte-carlo", "by the generator alone"),
-        (
-            "system.noise.kind=ornstein-uhlenbeck system.parameters.tau=1",
-            "formulas with white noise",
-        ),
-        (
-            "system.equations.y=-x-y+cos(b*t)",
-            "without angles and forcing",
-        ),
+        ("system.noise.kind=ornstein-uhlenbeck system.parameters.tau=1", "formulas with white noise"),
+        ("system.equations.y=-x-y+cos(b*t)", "without angles and forcing"),
     ] {
         room.refused(&format!("sweep a.toml {set}"), &[words, "a.toml:"]);
     }

@@ -144,6 +144,7 @@ fn a_live_page_solves_what_the_library_solves() {
 }
 
 #[test]
+#[rustfmt::skip]
 fn requests_of_a_live_page_are_answered_or_refused_in_words() {
     let served = Served::new();
     let solve = |ticket: u64, rest: &str| {
@@ -179,16 +180,8 @@ fn requests_of_a_live_page_are_answered_or_refused_in_words() {
         true
     );
     for (ticket, rest, says) in [
-        (
-            4,
-            r#""moving":"sigma2","values":{"f_c":0.0,"sigma2":-1.0}"#,
-            "greater than zero",
-        ),
-        (
-            5,
-            r#""moving":"friction","values":{"friction":0.0}"#,
-            "no parameter `friction`",
-        ),
+        (4, r#""moving":"sigma2","values":{"f_c":0.0,"sigma2":-1.0}"#, "greater than zero"),
+        (5, r#""moving":"friction","values":{"friction":0.0}"#, "no parameter `friction`"),
     ] {
         let words = refused(ticket, rest);
         assert!(words.contains(says), "{words}");
@@ -210,6 +203,7 @@ fn requests_of_a_live_page_are_answered_or_refused_in_words() {
 }
 
 #[test]
+#[rustfmt::skip]
 fn the_server_refuses_whoever_is_not_its_page() {
     let served = Served::new();
     let (port, path) = (served.port, served.path());
@@ -240,14 +234,8 @@ fn the_server_refuses_whoever_is_not_its_page() {
     }
     for (headers, code) in [
         ("Content-Type: text/plain\r\nContent-Length: 0", 400),
-        (
-            "Content-Type: application/json\r\nContent-Length: 70000",
-            413,
-        ),
-        (
-            "Content-Type: application/json\r\nSec-Fetch-Site: cross-site",
-            403,
-        ),
+        ("Content-Type: application/json\r\nContent-Length: 70000", 413),
+        ("Content-Type: application/json\r\nSec-Fetch-Site: cross-site", 403),
     ] {
         let request = format!("POST {path}solve HTTP/1.1\r\n{host}\r\n{headers}\r\n\r\n");
         assert_eq!(status(&served.raw(request.as_bytes())), code, "{headers}");
@@ -301,9 +289,9 @@ fn cheap(text: &str) -> Vec<(String, &'static str)> {
     cells.chain(sampled).collect()
 }
 
-/// The live page of a file opens, and every slider can be moved: the densities come on the cells that the page was
-/// told, unless the system has none, which words say.
-fn assert_every_slider_moves(file: &Path) {
+/// The live page of a file opens, and the swept slider and those of these numbers can be moved: the densities come on
+/// the cells that the page was told, unless the system has none, which words say.
+fn assert_sliders_move(file: &Path, is_moved: impl Fn(usize) -> bool) {
     let text = std::fs::read_to_string(file).unwrap();
     let settings = cheap(&text);
     let settings: Vec<String> = (settings.iter())
@@ -323,6 +311,9 @@ fn assert_every_slider_moves(file: &Path) {
     let parameters = scene["parameters"].as_array().unwrap();
     for (ticket, parameter) in (1..).zip(parameters) {
         let name = parameter["name"].as_str().unwrap();
+        if name != swept && !is_moved(ticket) {
+            continue;
+        }
         let moved = parameter["value"]
             .as_f64()
             .map_or(0.6 * from + 0.4 * to, |value| 1.01 * value);
@@ -355,9 +346,18 @@ fn assert_every_slider_moves(file: &Path) {
     }
 }
 
+/// Sliders of most files are of the same models and names: a third of them, by turns, finds what all find.
 #[test]
-fn every_shipped_file_opens_live_and_every_slider_moves() {
+fn every_shipped_file_opens_live_and_its_sliders_move() {
+    for (number, file) in shipped_files().iter().enumerate() {
+        assert_sliders_move(file, |slider| (slider + number) % 3 == 0);
+    }
+}
+
+#[test]
+#[ignore = "half a minute: all sliders"]
+fn every_slider_of_every_shipped_file_moves_at_length() {
     for file in shipped_files() {
-        assert_every_slider_moves(&file);
+        assert_sliders_move(&file, |_| true);
     }
 }

@@ -1,5 +1,6 @@
 //! Times of first passage from a sweep file to tables and figures; and questions that have no answer.
 
+use crate::common::numbers::assert_holds;
 use crate::common::room::{Room, assert_says};
 
 /// dx = -k x dt + √2 dW.
@@ -52,10 +53,7 @@ fn a_sweep_has_the_numbers_of_its_passages_and_again_after_it_is_read_back() {
     let table = room.table("run/points.csv");
     for row in &table.0 {
         let [k, mean, error] = row.numbers(["k", "leave_mean", "leave_mean_error"]);
-        assert!(
-            (mean - exact(k)).abs() <= error && error < 1e-3 * mean,
-            "{mean} ± {error}"
-        );
+        assert_holds([mean, error], exact(k), 1e-3 * mean);
         let [early, late] = row.numbers(["leave_0.5_survival", "leave_1_survival"]);
         assert!(1.0 > early && early > late && late > 0.0);
         let [median, deviation, rate] =
@@ -101,10 +99,7 @@ fn a_level_of_a_mean_time_is_located_where_the_formula_crosses_it() {
     let row = |of: &str| table.0.iter().find(|row| &row["observable"] == of).unwrap();
     let [value, error, lower, upper] =
         row("leave_mean").numbers(["value", "error", "lower", "upper"]);
-    assert!(
-        (value - at).abs() <= error && error < 1e-3,
-        "{value} ± {error}"
-    );
+    assert_holds([value, error], at, 1e-3);
     assert!(lower <= value && value <= upper && upper - lower <= 0.125);
     let texts = row("leave_mean").texts(["status", "method", "reason"]);
     assert_eq!(texts, ["located", "level", ""]);
@@ -123,27 +118,13 @@ fn a_level_of_a_mean_time_is_located_where_the_formula_crosses_it() {
 }
 
 #[test]
+#[rustfmt::skip]
 fn a_question_without_an_answer_leaves_the_rest_and_says_why() {
     let room = Room::new();
     for (old, new, code, words) in [
-        (
-            "far = \"not (-2 <= x <= 2)\"",
-            "far = \"x > 7\"",
-            "passage-nowhere",
-            "widen the ranges",
-        ),
-        (
-            "far = \"not (-2 <= x <= 2)\"",
-            "far = \"x < 7\"",
-            "passage-everywhere",
-            "nothing to wait for",
-        ),
-        (
-            "start = { x = 0 }",
-            "start = { x = 3 }",
-            "passage-start",
-            "it starts inside",
-        ),
+        ("far = \"not (-2 <= x <= 2)\"", "far = \"x > 7\"", "passage-nowhere", "widen the ranges"),
+        ("far = \"not (-2 <= x <= 2)\"", "far = \"x < 7\"", "passage-everywhere", "nothing to wait for"),
+        ("start = { x = 0 }", "start = { x = 3 }", "passage-start", "it starts inside"),
     ] {
         room.write("a.toml", FILE.replace(old, new));
         let printed = room.solved("sweep a.toml --out run");
@@ -158,70 +139,23 @@ fn a_question_without_an_answer_leaves_the_rest_and_says_why() {
 }
 
 #[test]
+#[rustfmt::skip]
 fn wrong_questions_are_refused_with_their_place_and_a_remedy() {
     let room = Room::new();
     for (old, new, words) in [
-        (
-            "abs(x) < 0.5",
-            "abs(z) < 0.5",
-            ["region `near`: unknown symbol `z`", "allowed: "],
-        ),
-        (
-            "abs(x) < 0.5",
-            "abs(x)",
-            ["neither an inequality", "and `not`"],
-        ),
-        (
-            "abs(x) < 0.5",
-            "k < 0.5",
-            ["depends on no coordinate", "near"],
-        ),
-        (
-            "x > 2 or far",
-            "x > 2 or",
-            ["an inequality is missing", "between"],
-        ),
+        ("abs(x) < 0.5", "abs(z) < 0.5", ["region `near`: unknown symbol `z`", "allowed: "]),
+        ("abs(x) < 0.5", "abs(x)", ["neither an inequality", "and `not`"]),
+        ("abs(x) < 0.5", "k < 0.5", ["depends on no coordinate", "near"]),
+        ("x > 2 or far", "x > 2 or", ["an inequality is missing", "between"]),
         ("x > 2 or far", "fra", ["`fra` is neither", "between"]),
-        (
-            "[passage]",
-            "[levels]\nleve_mean = 3.0\n[passage]",
-            ["`leve_mean` is no number of this sweep", "leave_mean"],
-        ),
-        (
-            "start = { x = 0 }, ",
-            "",
-            ["does not say where it starts", "start = { x = 0 }"],
-        ),
-        (
-            "start = { x = 0 }",
-            "start = { y = 0 }",
-            ["`y` is no coordinate", "no axis"],
-        ),
-        (
-            "start = { x = 0 }",
-            "start = { x = 0 }, from = \"near\"",
-            ["one is enough", "leave"],
-        ),
-        (
-            "until = \"far\", ",
-            "",
-            ["does not say where it ends", "leave"],
-        ),
-        (
-            "times = [1, 0.5]",
-            "times = [-1]",
-            ["times", "greater than zero"],
-        ),
-        (
-            "quantiles = [0.5]",
-            "quantiles = [1.5]",
-            ["quantiles", "between 0 and 1"],
-        ),
-        (
-            "[figures]",
-            "[method]\nkind = \"sgcm\"\n[figures]",
-            ["worked out by `generator`", "sgcm"],
-        ),
+        ("[passage]", "[levels]\nleve_mean = 3.0\n[passage]", ["`leve_mean` is no number of this sweep", "leave_mean"]),
+        ("start = { x = 0 }, ", "", ["does not say where it starts", "start = { x = 0 }"]),
+        ("start = { x = 0 }", "start = { y = 0 }", ["`y` is no coordinate", "no axis"]),
+        ("start = { x = 0 }", "start = { x = 0 }, from = \"near\"", ["one is enough", "leave"]),
+        ("until = \"far\", ", "", ["does not say where it ends", "leave"]),
+        ("times = [1, 0.5]", "times = [-1]", ["times", "greater than zero"]),
+        ("quantiles = [0.5]", "quantiles = [1.5]", ["quantiles", "between 0 and 1"]),
+        ("[figures]", "[method]\nkind = \"sgcm\"\n[figures]", ["worked out by `generator`", "sgcm"]),
     ] {
         assert_eq!(FILE.matches(old).count(), 1, "{old}");
         room.write("a.toml", FILE.replace(old, new));

@@ -1,5 +1,6 @@
 //! Slow modes from a sweep file to tables and figures.
 
+use crate::common::numbers::assert_holds;
 use crate::common::room::Room;
 
 /// dx = -k x dt + √2 dW.
@@ -34,25 +35,17 @@ fn a_sweep_has_its_slow_modes_and_the_value_at_which_a_rate_is_met() {
     let table = room.table("run/points.csv");
     for row in &table.0 {
         let [k] = row.numbers(["k"]);
-        let [rate, error] = row.numbers(["decay_rate_1", "decay_rate_1_error"]);
-        assert!(
-            (rate - k).abs() <= error && error < 1e-4,
-            "{rate} ± {error} at {k}"
-        );
-        let [rate, error] = row.numbers(["decay_rate_2", "decay_rate_2_error"]);
-        assert!(
-            (rate - 2.0 * k).abs() <= error && error < 1e-2,
-            "{rate} ± {error} at {k}"
+        assert_holds(row.numbers(["decay_rate_1", "decay_rate_1_error"]), k, 1e-4);
+        assert_holds(
+            row.numbers(["decay_rate_2", "decay_rate_2_error"]),
+            2.0 * k,
+            1e-2,
         );
         assert_eq!(row.numbers(["decay_frequency_1"]), [0.0]);
     }
     let rows = room.table("run/bifurcations.csv");
     let row = rows.0.iter().find(|row| &row["label"] == "LV1").unwrap();
-    let [value, error] = row.numbers(["value", "error"]);
-    assert!(
-        (value - 0.8).abs() <= error && error < 1e-3,
-        "{value} ± {error}"
-    );
+    assert_holds(row.numbers(["value", "error"]), 0.8, 1e-3);
     room.holds_all("run", "figures/measures_decay_rate_1.svg");
     room.done("verify run");
 }

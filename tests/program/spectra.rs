@@ -2,6 +2,7 @@
 
 use nalgebra::Complex;
 
+use crate::common::numbers::assert_holds;
 use crate::common::room::Room;
 
 /// x'' = -x - 2ζx' + 0.4 ξ: the maximum of the spectrum of x leaves zero where 2ζ² = 1.
@@ -76,18 +77,11 @@ fn a_sweep_has_its_spectra_and_the_values_at_which_their_shapes_change() {
     room.done("sweep a.toml --out run");
     for row in &room.table("run/points.csv").0 {
         let [zeta] = row.numbers(["zeta"]);
-        let [time, error] = row.numbers(["correlation_time_x", "correlation_time_x_error"]);
-        assert!(
-            (time - 2.0 * zeta).abs() <= error && error < 1e-3,
-            "{time} ± {error}"
-        );
+        let time = row.numbers(["correlation_time_x", "correlation_time_x_error"]);
+        assert_holds(time, 2.0 * zeta, 1e-3);
         if 2.0 * zeta * zeta < 0.98 {
-            let [peak, error] = row.numbers(["spectral_peak_x", "spectral_peak_x_error"]);
-            let exact = (1.0 - 2.0 * zeta * zeta).sqrt();
-            assert!(
-                (peak - exact).abs() <= error && error < 1e-2,
-                "{peak} ± {error}"
-            );
+            let peak = row.numbers(["spectral_peak_x", "spectral_peak_x_error"]);
+            assert_holds(peak, (1.0 - 2.0 * zeta * zeta).sqrt(), 1e-2);
         }
     }
     // The spectrum of x, and that of x with v, which is -iω of it.
@@ -97,10 +91,7 @@ fn a_sweep_has_its_spectra_and_the_values_at_which_their_shapes_change() {
         let w = frequency * frequency;
         let exact = 0.16 / ((1.0 - w).powi(2) + 4.0 * zeta * zeta * w);
         match &row["of"] {
-            "x" => assert!(
-                (power - exact).abs() <= error && error < 1e-2 * exact,
-                "{row:?}"
-            ),
+            "x" => assert_holds([power, error], exact, 1e-2 * exact),
             "x, v" => {
                 let [imaginary, error] = row.numbers(["imaginary", "imaginary_error"]);
                 assert!((imaginary + frequency * exact).abs() <= error, "{row:?}");
@@ -118,17 +109,8 @@ fn a_sweep_has_its_spectra_and_the_values_at_which_their_shapes_change() {
         );
         row.numbers(["value", "error"])
     };
-    let [value, error] = of("spectrum of x");
-    assert!(
-        (value - 0.5f64.sqrt()).abs() <= error && error < 1e-3,
-        "{value} ± {error}"
-    );
-    let [value, error] = of("spectrum of square");
-    let exact = fold_of_square();
-    assert!(
-        (value - exact).abs() <= error && error < 2e-3,
-        "{value} ± {error}, exact {exact}"
-    );
+    assert_holds(of("spectrum of x"), 0.5f64.sqrt(), 1e-3);
+    assert_holds(of("spectrum of square"), fold_of_square(), 2e-3);
     room.holds_all("run", "spectra.csv correlations.csv");
     room.holds_all(
         "run/figures",

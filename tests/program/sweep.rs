@@ -57,19 +57,24 @@ fn assert_ends(room: &Room, ends: &[(&str, &str, &str)]) {
     }
 }
 
+/// Ten times the damping, noise and friction of the shipped sweep: shapes change at ten times its values, and
+/// trajectories forget their start in a tenth of the time.
+const DAMPED: &str =
+    "system.parameters.kappa=0.1 system.parameters.sigma2=0.1 sweep.from=-0.2 sweep.to=0.1";
+
 #[test]
 fn coulomb_goes_from_two_peaks_and_a_crater_to_one_peak() {
     let room = Room::new();
     let cells = "cells.x.count=30 cells.y={from=-5.5,to=5.5,count=30}";
     let line = format!(
-        "sweep sweeps/coulomb_fc.toml --out run method.kind=sgcm {cells} sweep.points=4 method.samples=800 \
-         locate.tolerance=1e-4"
+        "sweep sweeps/coulomb_fc.toml --out run method.kind=sgcm {cells} {DAMPED} sweep.points=4 method.samples=800 \
+         figures.at=[-0.2,0.1] locate.tolerance=1e-3"
     );
     let printed = room.solved(&line);
     assert_ends(
         &room,
         &[
-            ("f_c", "-0.02", "0.01"),
+            ("f_c", "-0.2", "0.1"),
             ("peaks_x", "2", "1"),
             ("peaks_y", "2", "1"),
             ("craters_xy", "1", "0"),
@@ -94,7 +99,7 @@ fn coulomb_goes_from_two_peaks_and_a_crater_to_one_peak() {
         "{rows:?}"
     );
     for row in rows.iter().filter(|row| &row["status"] == "located") {
-        assert!(row.number("value").abs() < 1e-4, "{row:?}");
+        assert!(row.number("value").abs() < 1e-3, "{row:?}");
     }
     printed.says(&["PB1", "merger at a kink"]);
     room.holds_all(
@@ -133,11 +138,13 @@ fn dahl_goes_from_two_peaks_to_one_in_x_and_stays_at_one_in_y() {
 fn exact_bifurcations_lie_in_the_stated_band() {
     let splits = ("bistable", "x", "2 peaks");
     let opens = ("rayleigh_crater", "xy", "ring");
-    let grid = "cells.x.count=30 cells.y.count=30 sweep.points=9 method.samples=1000";
+    // Samples tell no more than these tolerances ask for.
+    let line = "sweep.points=21 method.samples=5000 locate.tolerance=5e-3";
+    let grid = "cells.x.count=30 cells.y.count=30 sweep.points=9 method.samples=1000 locate.tolerance=2e-3";
     let exact = "method.kind=generator locate.tolerance=1e-3";
     // By SGCM, and tightly by the generator.
     for ((name, observable, after), settings, width) in [
-        (splits, "sweep.points=21 method.samples=5000", f64::INFINITY),
+        (splits, line, f64::INFINITY),
         (opens, grid, f64::INFINITY),
         (splits, exact, 0.04),
         (opens, exact, 0.02),
@@ -177,7 +184,8 @@ fn dahl_as_printed_ends_in_a_message_and_no_picture() {
 #[test]
 fn results_do_not_depend_on_the_number_of_threads() {
     let sampled = "cells.x.count=20 cells.y={from=-5.5,to=5.5,count=20} sweep.points=3 method.samples=160 \
-                   locate.largest_distance=0.99 locate.tolerance=2e-3";
+                   locate.largest_distance=0.99 locate.tolerance=2e-2 figures.at=[-0.2,0.1]";
+    let sampled = &*format!("{DAMPED} {sampled}");
     // Four segments, and changes that are far from each other.
     let generator = "method.kind=generator cells.x.count=40 cells.y.count=40 sweep.points=33 locate.tolerance=1e-4";
     for (settings, more) in [

@@ -5,15 +5,6 @@ use crate::common::sweeps::{rows, swept};
 use pbif::continuation::BifurcationStatus;
 use pbif::density::Density;
 
-/// Numbers between others, the same everywhere.
-fn dice(seed: u64) -> impl FnMut(f64, f64) -> f64 {
-    let mut dice = Numbers(given("OTHER_SEEDS", seed));
-    move |from: f64, to: f64| {
-        let unit = dice.next() as f64 / u64::MAX as f64;
-        from + unit * (to - from)
-    }
-}
-
 /// Amplitude over standard deviation from where on the density of a moving normal density has two peaks over a period:
 /// the zero of the confluent hypergeometric function ₁F₁(3/2; 1; -r²/2), by its series.
 fn ratio() -> f64 {
@@ -41,7 +32,8 @@ fn ratio() -> f64 {
 
 #[test]
 fn the_split_over_a_period_of_random_linear_systems_is_within_its_error() {
-    let mut between = dice(300);
+    let mut dice = Numbers(given("OTHER_SEEDS", 300));
+    let mut between = |from, to| dice.between(from, to);
     for case in 0..6 {
         let (k, w, d) = (
             between(0.3, 2.0),
@@ -91,14 +83,29 @@ fn off_by(density: &Density, amplitude: f64, deviation: f64) -> f64 {
     0.5 * distances.sum::<f64>()
 }
 
+/// Each has both of its splits located and its densities known; more systems only find that other numbers do as well.
 #[test]
 fn splits_over_a_period_of_random_linear_oscillators_are_within_their_errors() {
-    let mut between = dice(310);
-    for case in 0..2 {
+    assert_splits(0..1);
+}
+
+#[test]
+#[ignore = "a minute: the same of more systems"]
+fn splits_over_a_period_of_random_linear_oscillators_at_length() {
+    assert_splits(1..4);
+}
+
+fn assert_splits(cases: std::ops::Range<usize>) {
+    let mut dice = Numbers(given("OTHER_SEEDS", 310));
+    let mut between = |from, to| dice.between(from, to);
+    for case in 0..cases.end {
         let (k, g, w) = (between(0.5, 2.0), between(0.3, 1.2), between(0.4, 2.0));
         let temperature = 10.0_f64.powf(between(-1.0, 0.5));
         // x'' = -g x' - k x + F cos(w t) + √(2 g T) ξ: variances T/k of x and T of y about means that move with the
         // amplitudes F/Z and w F/Z.
+        if !cases.contains(&case) {
+            continue;
+        }
         let resistance = (k - w * w).hypot(g * w);
         let deviations = [(temperature / k).sqrt(), temperature.sqrt()];
         let amplitudes = [1.0 / resistance, w / resistance];

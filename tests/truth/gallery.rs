@@ -1,16 +1,19 @@
 //! The systems of the gallery against what is known: exact values of their changes, exact densities, free trajectories.
 
-use pbif::continuation::{BifurcationStatus, Point, SweepResult};
+use pbif::continuation::{BifurcationStatus, Solution, SweepResult};
 use pbif::density::{EstimatedDensity, total_variation};
 use pbif::sweep_file::starting_files;
 
-use crate::common::numbers::Numbers;
-use crate::common::sweeps::{rows, swept};
+use crate::common::numbers::{Numbers, assert_holds};
+use crate::common::sweeps::{rows, solved, swept};
+
+fn text(name: &str) -> &'static str {
+    let mut files = starting_files().iter();
+    files.find(|file| file.name == name).unwrap().text
+}
 
 fn run(name: &str, settings: &str) -> SweepResult {
-    let mut files = starting_files().iter();
-    let file = files.find(|file| file.name == name).unwrap();
-    swept(file.text, settings).1
+    swept(text(name), settings).1
 }
 
 /// A change of an observable is located at this value, within its own error, which is at most `error`.
@@ -93,13 +96,10 @@ fn the_peak_of_verhulst_growth_leaves_the_edge_where_the_exponent_is_zero() {
 
 #[test]
 fn verhulst_growth_has_its_exact_density() {
-    let found = run(
-        "verhulst",
-        "sweep.points=2 sweep.from=0.8 locate.grid_check=off",
-    );
-    for (point, a) in [(&found.points[0], 0.8), (found.points.last().unwrap(), 1.0)] {
+    for a in [0.8, 1.0] {
+        let (_, found) = solved(text("verhulst"), "sweep.from=0.8", Some(a));
         // x^(a/D - 1) exp(-x/D), integrated over each cell by its middle.
-        let density = &point.densities[0].density;
+        let density = &found.densities[0].density;
         let axis = &density.axes[0];
         let exact: Vec<f64> = (0..axis.count())
             .map(|cell| {
@@ -120,19 +120,12 @@ fn verhulst_growth_has_its_exact_density() {
 
 /// Generator and free trajectories have the same marginals to what the trajectories' own errors allow.
 fn assert_as_trajectories(name: &str, settings: &str) {
-    let ends = "sweep.points=2 locate.grid_check=off locate.largest_distance=0.99";
-    let solved = run(name, &format!("{ends} {settings}"));
+    let densities = |settings: &str| solved(text(name), settings, None).1.densities;
+    let by_generator = densities(settings);
     let sampled = "method.kind=monte-carlo method.error=0.02 detect.joint=[]";
-    let sampled = run(name, &format!("{ends} {settings} {sampled}"));
-    let last = |result: &SweepResult| -> Vec<EstimatedDensity> {
-        result.points.last().unwrap().densities.clone()
-    };
-    for free in last(&sampled) {
-        let all = last(&solved);
-        let own = all
-            .iter()
-            .find(|one| one.observable == free.observable)
-            .unwrap();
+    for free in densities(&format!("{settings} {sampled}")) {
+        let mut own = by_generator.iter();
+        let own = own.find(|one| one.observable == free.observable).unwrap();
         let distance = total_variation(&own.density, &free.density).unwrap();
         // ½ Σ |error| h of the counted density; the mean of |N(0, s)| is 0.8 s.
         let axis = &free.density.axes[0];
@@ -211,37 +204,27 @@ fn lines_of_a_double_well_come_and_go_whatever_the_cells() {
 }
 
 /// A measure of a solved value, with its error.
-fn measured(point: &Point, name: &str) -> (f64, f64) {
-    let mut measures = point.report.measures.iter();
+fn measured(solution: &Solution<'_>, name: &str) -> [f64; 2] {
+    let mut measures = solution.report.measures.iter();
     let found = measures.find(|one| one.name == name).unwrap();
-    (found.value, found.error.unwrap())
+    [found.value, found.error.unwrap()]
 }
 
 #[test]
 fn a_double_well_resonates_as_linear_response_says() {
-    let only = "sweep.from=0.12 sweep.to=0.4 sweep.points=2 locate.grid_check=off";
-    let found = run("stochastic_resonance", only);
-    let (value, error) = measured(&found.points[0], "amplification_x");
+    let only = "sweep.from=0.12 sweep.to=0.4";
+    let (_, found) = solved(text("stochastic_resonance"), only, Some(0.12));
     // By complex harmonics of another program.
-    assert!(
-        (value - 9.265_904).abs() < error && error < 0.05,
-        "{value} ± {error:e}"
-    );
+    assert_holds(measured(&found, "amplification_x"), 9.265_904, 0.05);
 }
 
 #[test]
 fn a_pendulum_turns_with_its_known_velocity() {
-    let ends = "sweep.from=0.5 sweep.points=2 locate.grid_check=off";
-    let found = run("pendulum", ends);
     // By a product of Hermite and Fourier modes, 40 × 25, of another program.
-    let known = [
-        (&found.points[0], 0.328_288),
-        (found.points.last().unwrap(), 1.694_755),
-    ];
-    for (point, exact) in known {
-        let (value, error) = measured(point, "velocity_phi");
-        let off = (value - exact).abs();
-        assert!(off < error + 1e-6 && error < 1e-2, "{value} ± {error:e}");
+    for (value, exact) in [(Some(0.5), 0.328_288), (None, 1.694_755)] {
+        let (_, found) = solved(text("pendulum"), "sweep.from=0.5", value);
+        let [value, error] = measured(&found, "velocity_phi");
+        assert_holds([value, error + 1e-6], exact, 1e-2);
     }
 }
 
@@ -257,8 +240,8 @@ fn mathieu_moments(e: f64, time: f64, [xx, xy, yy]: [f64; 3]) -> [f64; 3] {
 
 #[test]
 fn mathieu_has_the_variance_of_its_moment_equations() {
-    let found = run("mathieu", "sweep.points=2 locate.grid_check=off");
-    let e = found.points.last().unwrap().value;
+    let (sweep, found) = solved(text("mathieu"), "", None);
+    let e = sweep.problem.family().ends().1;
     // Runge and Kutta's rule until nothing changes any more, then over one period of length π.
     let steps = 2000;
     let step = std::f64::consts::PI / f64::from(steps);
@@ -276,22 +259,16 @@ fn mathieu_has_the_variance_of_its_moment_equations() {
         }
         moments = [0, 1, 2].map(|i| moments[i] + step / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]));
     }
-    let (value, error) = measured(found.points.last().unwrap(), "sd_x");
-    let off = (value - average.sqrt()).abs();
-    assert!(
-        off < error && error < 5e-3,
-        "{value} ± {error:e}, {}",
-        average.sqrt()
-    );
+    let spread = measured(&found, "sd_x");
+    assert_holds(spread, average.sqrt(), 5e-3);
 }
 
 #[test]
 fn a_forced_duffing_oscillator_agrees_with_free_trajectories_at_a_phase() {
-    let ends = "sweep.from=0.5 sweep.to=0.6 sweep.points=2 locate.grid_check=off";
-    let found = run("forced_duffing", ends);
-    let point = found.points.last().unwrap();
-    let phase = |one: &&EstimatedDensity| one.observable.name(&found.subject.family) == "x_phase_0";
-    let density = &point.densities.iter().find(phase).unwrap().density;
+    let (sweep, found) = solved(text("forced_duffing"), "sweep.from=0.5 sweep.to=0.6", None);
+    let family = sweep.problem.family();
+    let phase = |one: &&EstimatedDensity| one.observable.name(family) == "x_phase_0";
+    let density = &found.densities.iter().find(phase).unwrap().density;
     // Heun's method, so many oscillators, looked at once a period after some tens of them.
     let (g, w, t, f) = (0.3, 1.0, 0.3, 0.6_f64);
     let mut dice = Numbers(11);

@@ -19,6 +19,22 @@ struct Case {
     expected: Expected,
 }
 
+const fn case(
+    file: &'static str,
+    set: &'static str,
+    words: &'static str,
+    truths: &'static [(&'static str, f64)],
+    expected: Expected,
+) -> Case {
+    Case {
+        file,
+        set,
+        words,
+        truths,
+        expected,
+    }
+}
+
 /// What must come of a case.
 enum Expected {
     /// Every change is located within 1e-4 of the range, and nothing else.
@@ -31,209 +47,57 @@ use Expected::{Located, Some as Partly};
 /// Fold of h + x - x³.
 const FOLD: f64 = 0.384_900_179_459_750_5;
 
+#[rustfmt::skip]
 const CASES: &[Case] = &[
-    Case {
-        file: "ring",
-        set: "",
-        words: "a bottom becomes a peak inside a ring, which ends later",
-        truths: &[("xy", 0.0), ("xy", 0.25)],
-        expected: Located,
-    },
-    Case {
-        file: "two_wells",
-        set: "",
-        words: "`rayleigh` with α = -1: peaks open to rings, which merge",
-        truths: &[("xy", -0.025), ("xy", 0.0)],
-        expected: Partly(1, "more cells"),
-    },
-    Case {
-        file: "coulomb_ranges",
-        set: "",
-        words: "`coulomb` without friction, both ranges `auto`",
-        truths: &[("x", 0.0), ("xy", 0.0)],
-        expected: Located,
-    },
-    Case {
-        file: "narrow_range",
-        set: "",
-        words: "the same, a range that is too narrow",
-        truths: &[("x", 0.0), ("xy", 0.0)],
-        expected: Partly(0, "a wider range of y"),
-    },
-    Case {
-        file: "two_folds",
-        set: "",
-        words: "three peaks become one by two folds inside one step",
-        truths: &[
-            ("x", -0.507_233_543_5),
-            ("x", -0.497_240_265_5),
-            ("x", 0.497_240_265_5),
-            ("x", 0.507_233_543_5),
-        ],
-        expected: Located,
-    },
-    Case {
-        file: "deep_wells",
-        set: "",
-        words: "`bistable`, σ² = 0.01",
-        truths: &[("x", 0.0)],
-        expected: Located,
-    },
-    Case {
-        file: "tilted",
-        set: "system.noise.x=\"sqrt(0.03)\" cells.x.count=200",
-        words: "a tilted well, σ² = 0.03, 200 cells",
-        truths: &[("x", -FOLD), ("x", FOLD)],
-        expected: Located,
-    },
-    Case {
-        file: "tilted",
-        set: "system.noise.x=\"0.01\" sweep.from=-0.6 sweep.to=0.6 cells.x.count=100",
-        words: "the same, σ² = 1e-4, whose second peak is too low for a number, 100 cells",
-        truths: &[("x", -FOLD), ("x", FOLD)],
-        expected: Located,
-    },
-    Case {
-        file: "tilted",
-        set: "system.noise.x=\"sqrt(0.05)\" cells.x.count=400",
-        words: "the same, σ² = 0.05, 400 cells",
-        truths: &[("x", -FOLD), ("x", FOLD)],
-        expected: Located,
-    },
-    Case {
-        file: "tilted",
-        set: "sweep.from=0.30",
-        words: "the same, σ² = 0.25, h from 0.30",
-        truths: &[("x", FOLD)],
-        expected: Located,
-    },
-    Case {
-        file: "tilted",
-        set: "sweep.from=0.33",
-        words: "the same, h from 0.33",
-        truths: &[("x", FOLD)],
-        expected: Located,
-    },
-    Case {
-        file: "undeclared_1d",
-        set: "",
-        words: "a symmetry that nobody declares, one axis",
-        truths: &[("x", 0.0)],
-        expected: Located,
-    },
-    Case {
-        file: "undeclared_2d",
-        set: "",
-        words: "the same of an oscillator",
-        truths: &[("xy", 0.5)],
-        expected: Located,
-    },
-    Case {
-        file: "undeclared_kink",
-        set: "",
-        words: "the same at a kink",
-        truths: &[("x", 0.0)],
-        expected: Located,
-    },
-    Case {
-        file: "tilted_bistable",
-        set: "",
-        words: "no symmetry, h = 0.05",
-        truths: &[("x", 0.256_496_392_002_251_1)],
-        expected: Located,
-    },
-    Case {
-        file: "tilted_bistable",
-        set: "'system.equations.x=\"0.001 + a x - x^3\"'",
-        words: "nearly symmetric, h = 0.001",
-        truths: &[("x", 0.018_898_815_748_423_1)],
-        expected: Located,
-    },
-    Case {
-        file: "tilted_oscillator",
-        set: "",
-        words: "an oscillator in a tilted well, joint density",
-        truths: &[("xy", -FOLD), ("xy", FOLD)],
-        expected: Located,
-    },
-    Case {
-        file: "undeclared_1d",
-        set: "'system.equations.x=\"1e-3 a x - x^3\"' sweep.from=-1e3 sweep.to=1e3 sweep.points=40",
-        words: "a parameter in units of 10³",
-        truths: &[("x", 0.0)],
-        expected: Located,
-    },
-    Case {
-        file: "undeclared_1d",
-        set: "'system.equations.x=\"1e-9 a x - x^3\"' sweep.from=-1e9 sweep.to=1e9 sweep.points=40",
-        words: "a parameter in units of 10⁹",
-        truths: &[("x", 0.0)],
-        expected: Located,
-    },
-    Case {
-        file: "sgcm",
-        set: "",
-        words: "SGCM, noise between two walls",
-        truths: &[("x", 2.0)],
-        expected: Partly(0, "needed"),
-    },
-    Case {
-        file: "sine",
-        set: "",
-        words: "births in tails that 80 cells an axis do not resolve",
-        truths: &[("x", -0.065_336_9), ("x", 0.123_170_6)],
-        expected: Partly(0, "more cells"),
-    },
-    Case {
-        file: "circulation",
-        set: "",
-        words: "the same of a drift that circulates, 50 cells an axis",
-        truths: &[("x", -0.089_664_6), ("x", 0.208_679_0)],
-        expected: Partly(0, "more cells"),
-    },
-    Case {
-        file: "faint_centre",
-        set: "",
-        words: "a peak within a ring, of 6e-8 of its height, σ² = 0.02",
-        truths: &[("xy", 0.0), ("xy", 0.25)],
-        expected: Partly(1, "falls below its errors"),
-    },
-    Case {
-        file: "resting",
-        set: "",
-        words: "a crater that opens at a fixed point under noise in the stiffness, 80 cells",
-        truths: &[("xy", 0.0)],
-        expected: Partly(0, "zero there at 0"),
-    },
-    Case {
-        file: "coupled",
-        set: "",
-        words: "two bistable units, whose peaks out of phase become saddles",
-        truths: &[("x1_x2", 1.0 / 3.0), ("x1_x2", 0.5)],
-        expected: Located,
-    },
-    Case {
-        file: "van_der_pol",
-        set: "",
-        words: "van der Pol's oscillator, whose crater closes where mass leaves the range",
-        // Between ends at ± 9 and ± 15, where nothing leaves: 2.392497 and 2.392494 with 160 × 240 and 240 × 360 cells.
-        truths: &[("y", 0.839_64), ("xy", 2.392_495)],
-        expected: Partly(1, "a wider range of y"),
-    },
-    Case {
-        file: "epidemic",
-        set: "",
-        words: "an epidemic, whose peak reaches the end at which the noise dies",
-        truths: &[("I", 0.022_360_679_775)],
-        expected: Located,
-    },
-    Case {
-        file: "dimentberg",
-        set: "",
-        words: "Dimentberg's oscillator, ranges found",
-        truths: &[("x", -0.453_634_0), ("y", -0.453_634_0), ("xy", -0.125)],
-        expected: Located,
-    },
+    case("ring", "", "a bottom becomes a peak inside a ring, which ends later", &[("xy", 0.0), ("xy", 0.25)],
+        Located),
+    case("two_wells", "", "`rayleigh` with α = -1: peaks open to rings, which merge", &[("xy", -0.025), ("xy", 0.0)],
+        Partly(1, "more cells")),
+    case("coulomb_ranges", "", "`coulomb` without friction, both ranges `auto`", &[("x", 0.0), ("xy", 0.0)], Located),
+    case("narrow_range", "", "the same, a range that is too narrow", &[("x", 0.0), ("xy", 0.0)],
+        Partly(0, "a wider range of y")),
+    case("two_folds", "", "three peaks become one by two folds inside one step",
+        &[("x", -0.507_233_543_5), ("x", -0.497_240_265_5), ("x", 0.497_240_265_5), ("x", 0.507_233_543_5)], Located),
+    case("deep_wells", "", "`bistable`, σ² = 0.01", &[("x", 0.0)], Located),
+    case("tilted", "system.noise.x=\"sqrt(0.03)\" cells.x.count=200", "a tilted well, σ² = 0.03, 200 cells",
+        &[("x", -FOLD), ("x", FOLD)], Located),
+    case("tilted", "system.noise.x=\"0.01\" sweep.from=-0.6 sweep.to=0.6 cells.x.count=100",
+        "the same, σ² = 1e-4, whose second peak is too low for a number, 100 cells", &[("x", -FOLD), ("x", FOLD)],
+        Located),
+    case("tilted", "system.noise.x=\"sqrt(0.05)\" cells.x.count=400", "the same, σ² = 0.05, 400 cells",
+        &[("x", -FOLD), ("x", FOLD)], Located),
+    case("tilted", "sweep.from=0.30", "the same, σ² = 0.25, h from 0.30", &[("x", FOLD)], Located),
+    case("tilted", "sweep.from=0.33", "the same, h from 0.33", &[("x", FOLD)], Located),
+    case("undeclared_1d", "", "a symmetry that nobody declares, one axis", &[("x", 0.0)], Located),
+    case("undeclared_2d", "", "the same of an oscillator", &[("xy", 0.5)], Located),
+    case("undeclared_kink", "", "the same at a kink", &[("x", 0.0)], Located),
+    case("tilted_bistable", "", "no symmetry, h = 0.05", &[("x", 0.256_496_392_002_251_1)], Located),
+    case("tilted_bistable", "'system.equations.x=\"0.001 + a x - x^3\"'", "nearly symmetric, h = 0.001",
+        &[("x", 0.018_898_815_748_423_1)], Located),
+    case("tilted_oscillator", "", "an oscillator in a tilted well, joint density", &[("xy", -FOLD), ("xy", FOLD)],
+        Located),
+    case("undeclared_1d", "'system.equations.x=\"1e-3 a x - x^3\"' sweep.from=-1e3 sweep.to=1e3 sweep.points=40",
+        "a parameter in units of 10³", &[("x", 0.0)], Located),
+    case("undeclared_1d", "'system.equations.x=\"1e-9 a x - x^3\"' sweep.from=-1e9 sweep.to=1e9 sweep.points=40",
+        "a parameter in units of 10⁹", &[("x", 0.0)], Located),
+    case("sgcm", "", "SGCM, noise between two walls", &[("x", 2.0)], Partly(0, "needed")),
+    case("sine", "", "births in tails that 80 cells an axis do not resolve",
+        &[("x", -0.065_336_9), ("x", 0.123_170_6)], Partly(0, "more cells")),
+    case("circulation", "", "the same of a drift that circulates, 50 cells an axis",
+        &[("x", -0.089_664_6), ("x", 0.208_679_0)], Partly(0, "more cells")),
+    case("faint_centre", "", "a peak within a ring, of 6e-8 of its height, σ² = 0.02", &[("xy", 0.0), ("xy", 0.25)],
+        Partly(1, "falls below its errors")),
+    case("resting", "", "a crater that opens at a fixed point under noise in the stiffness, 80 cells", &[("xy", 0.0)],
+        Partly(0, "zero there at 0")),
+    case("coupled", "", "two bistable units, whose peaks out of phase become saddles",
+        &[("x1_x2", 1.0 / 3.0), ("x1_x2", 0.5)], Located),
+    // Between ends at ± 9 and ± 15, where nothing leaves: 2.392497 and 2.392494 with 160 × 240 and 240 × 360 cells.
+    case("van_der_pol", "", "van der Pol's oscillator, whose crater closes where mass leaves the range",
+        &[("y", 0.839_64), ("xy", 2.392_495)], Partly(1, "a wider range of y")),
+    case("epidemic", "", "an epidemic, whose peak reaches the end at which the noise dies",
+        &[("I", 0.022_360_679_775)], Located),
+    case("dimentberg", "", "Dimentberg's oscillator, ranges found",
+        &[("x", -0.453_634_0), ("y", -0.453_634_0), ("xy", -0.125)], Located),
 ];
 
 /// The changes that a case finds.
@@ -308,7 +172,8 @@ fn judged(case: &Case, rows: &[Row]) -> (String, Option<String>) {
     (text, wrong)
 }
 
-fn all(cases: &[Case]) {
+/// Runs cases, prints their rows of the table, and asserts that nothing is wrong with them.
+fn assert_right(cases: impl Iterator<Item = &'static Case>) {
     println!("| sweep | density | truth | found | status |\n| --- | --- | --- | --- | --- |");
     let mut wrong = Vec::new();
     for case in cases {
@@ -320,49 +185,33 @@ fn all(cases: &[Case]) {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
+fn of(files: &'static [&str]) -> impl Iterator<Item = &'static Case> {
+    CASES.iter().filter(|case| files.contains(&case.file))
+}
+
 #[test]
 fn nothing_is_located_where_a_density_passes_zero() {
-    let in_tails = |case: &&Case| ["sine", "circulation"].contains(&case.file);
-    for case in CASES.iter().filter(in_tails) {
-        let (text, wrong) = judged(case, &run(case));
-        assert!(wrong.is_none(), "{wrong:?}\n{text}");
-    }
+    assert_right(of(&["sine", "circulation"]));
 }
 
 #[test]
 fn bands_hold_what_is_lost_in_the_errors_of_a_density_or_is_read_beside_a_fixed_point() {
-    let in_doubt = |case: &&Case| ["faint_centre", "resting"].contains(&case.file);
-    for case in CASES.iter().filter(in_doubt) {
-        let (text, wrong) = judged(case, &run(case));
-        assert!(wrong.is_none(), "{wrong:?}\n{text}");
-    }
+    assert_right(of(&["faint_centre", "resting"]));
 }
 
 #[test]
 fn cells_are_refined_until_values_are_as_certain_as_wanted() {
-    let of_symmetries =
-        |case: &&Case| ["coupled", "dimentberg", "van_der_pol"].contains(&case.file);
-    for case in CASES.iter().filter(of_symmetries) {
-        let (text, wrong) = judged(case, &run(case));
-        assert!(wrong.is_none(), "{wrong:?}\n{text}");
-    }
+    assert_right(of(&["coupled", "dimentberg", "van_der_pol"]));
 }
 
 #[test]
 fn quick_cases_on_one_axis_are_located() {
-    let is_quick = |case: &&Case| {
-        let files = ["deep_wells", "tilted", "two_folds", "undeclared_kink"];
-        files.contains(&case.file)
-    };
-    let first = CASES.iter().filter(is_quick).take(4);
-    for case in first {
-        let (text, wrong) = judged(case, &run(case));
-        assert!(wrong.is_none(), "{wrong:?}\n{text}");
-    }
+    let quick = &["deep_wells", "tilted", "two_folds", "undeclared_kink"];
+    assert_right(of(quick).take(4));
 }
 
 #[test]
 #[ignore = "prints the table of docs/location.md"]
 fn all_of_them() {
-    all(CASES);
+    assert_right(CASES.iter());
 }

@@ -137,11 +137,18 @@ fn the_generator_locates_exact_families_within_its_stated_errors() {
 }
 
 #[test]
-fn a_million_samples_locate_exact_families_within_a_hundredth_of_the_range() {
-    let x = Observable::Marginal(0);
-    // 100 cells × 10⁴ samples; 50² cells × 400.
+fn a_million_samples_locate_an_exact_split_within_a_hundredth_of_the_range() {
+    // 100 cells × 10⁴ samples.
     let result = bistable(11, (-1.0, 1.0)).run(&sgcm(10_000, 5.0, 1));
-    assert_located(&result, x, 0.0, 0.02);
+    assert_located(&result, Observable::Marginal(0), 0.0, 0.02);
+}
+
+/// Samples of a joint density are short in `program` (`exact_bifurcations_lie_in_the_stated_band`), which says less of
+/// the error.
+#[test]
+#[ignore = "a minute: weak damping asks for long trajectories"]
+fn a_million_samples_locate_an_exact_ring_at_length() {
+    // 50² cells × 400.
     let result = rayleigh(50, 5, (-0.1, 0.1)).run(&sgcm(400, 80.0, 1));
     assert_located(&result, Observable::Joint(0, 1), 0.0, 0.002);
 }

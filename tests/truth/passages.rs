@@ -232,10 +232,7 @@ fn a_time_of_many_digits_is_a_number_with_an_error() {
 /// Random wells: exact times by quadrature, cells and borders anywhere. What is off by so many of its errors.
 fn random_wells(seed: u64, number: usize, axes: usize) -> Vec<f64> {
     let mut dice = Numbers(seed);
-    let mut between = move |from: f64, to: f64| {
-        let unit = dice.next() as f64 / u64::MAX as f64;
-        ((from + unit * (to - from)) * 1000.0).round() / 1000.0
-    };
+    let mut between = |from, to| dice.rounded(from, to);
     let mut all = Vec::new();
     for case in 0..number {
         let (tilt, depth) = (between(-0.2, 0.2), between(0.6, 1.5));

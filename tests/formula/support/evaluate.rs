@@ -181,7 +181,6 @@ fn power(a: Bounded, b: Bounded) -> Option<Bounded> {
 fn bounded_call(name: &str, values: &[Bounded]) -> Option<Bounded> {
     let first = *values.first()?;
     let (x, error) = (first.value, first.error);
-    let with = |value: f64, slope: f64| Some(rounded(value, 2.0 * slope.abs() * error));
     let small = error < 1e-3 * (1.0 + x.abs()).min(1.0);
     match name {
         "min" | "max" => {
@@ -229,43 +228,32 @@ fn bounded_call(name: &str, values: &[Bounded]) -> Option<Bounded> {
         _ if !small => return None,
         _ => {}
     }
-    match name {
-        "sin" => (x.abs() < 1e5)
-            .then_some(())
-            .and_then(|()| with(x.sin(), 1.0)),
-        "cos" => (x.abs() < 1e5)
-            .then_some(())
-            .and_then(|()| with(x.cos(), 1.0)),
+    // What is smooth only in a part of the axis, and the value and slope there.
+    let (is_smooth, value, slope) = match name {
+        "sin" => (x.abs() < 1e5, x.sin(), 1.0),
+        "cos" => (x.abs() < 1e5, x.cos(), 1.0),
         "tan" => {
             let slope = 1.0 + x.tan().powi(2);
-            (x.abs() < 1e5 && slope * error < 1e-3)
-                .then_some(())
-                .and_then(|()| with(x.tan(), slope))
+            (x.abs() < 1e5 && slope * error < 1e-3, x.tan(), slope)
         }
         "asin" | "acos" => {
             let rest = 1.0 - x * x - 3.0 * error;
             let value = if name == "asin" { x.asin() } else { x.acos() };
-            (rest > 1e-6)
-                .then_some(())
-                .and_then(|()| with(value, 1.0 / rest.sqrt()))
+            (rest > 1e-6, value, 1.0 / rest.sqrt())
         }
-        "atan" => with(x.atan(), 1.0),
-        "sinh" => with(x.sinh(), x.cosh()),
-        "cosh" => with(x.cosh(), x.cosh()),
-        "tanh" => with(x.tanh(), 1.0),
-        "exp" => with(x.exp(), x.exp()),
-        "log" | "ln" => (x > 2.0 * error)
-            .then_some(())
-            .and_then(|()| with(x.ln(), 1.0 / (x - error))),
-        "log10" => (x > 2.0 * error)
-            .then_some(())
-            .and_then(|()| with(x.log10(), 1.0 / (x - error))),
-        "sqrt" => (x > 2.0 * error)
-            .then_some(())
-            .and_then(|()| with(x.sqrt(), 1.0 / (x - error).sqrt())),
-        "cbrt" => (x.abs() > 2.0 * error)
-            .then_some(())
-            .and_then(|()| with(x.cbrt(), (x.abs() - error).powf(-2.0 / 3.0))),
-        _ => None,
-    }
+        "atan" => (true, x.atan(), 1.0),
+        "sinh" => (true, x.sinh(), x.cosh()),
+        "cosh" => (true, x.cosh(), x.cosh()),
+        "tanh" => (true, x.tanh(), 1.0),
+        "exp" => (true, x.exp(), x.exp()),
+        "log" | "ln" => (x > 2.0 * error, x.ln(), 1.0 / (x - error)),
+        "log10" => (x > 2.0 * error, x.log10(), 1.0 / (x - error)),
+        "sqrt" => (x > 2.0 * error, x.sqrt(), 1.0 / (x - error).sqrt()),
+        "cbrt" => {
+            let slope = (x.abs() - error).powf(-2.0 / 3.0);
+            (x.abs() > 2.0 * error, x.cbrt(), slope)
+        }
+        _ => return None,
+    };
+    is_smooth.then(|| rounded(value, 2.0 * slope.abs() * error))
 }
