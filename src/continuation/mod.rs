@@ -64,6 +64,7 @@ mod segment;
 mod shard;
 mod source;
 mod span;
+mod state_field;
 mod sweep;
 mod wanted;
 
@@ -74,6 +75,7 @@ pub use error::SweepError;
 pub(crate) use finding::tests::every_finding;
 pub use finding::{Finding, PassageFault, ShiftedQuantity, SteadyClass};
 pub use fluctuations::Fluctuations;
+pub use state_field::StateField;
 pub use grid::CheckedIndicator;
 pub use label::{Label, Located, RowWords, Zero};
 pub use levels::{LevelCrossing, SpectralChange};

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::{
-    AtPhase, Enclosed, FixedPointFault, Linearised, MeasureLevel, Model, NoiseKind,
+    AtPhase, Enclosed, FieldQuestion, FixedPointFault, Linearised, MeasureLevel, Model, NoiseKind,
     ParameterValues, PassageQuestion, Path, Quantity, Region, SpectrumQuestion, System,
     SystemError, Tangent, TangentFault,
 };
@@ -121,6 +121,11 @@ impl Family {
         self.regions = regions;
         self.passages = passages;
         self
+    }
+
+    /// The fields of all passages that are wanted.
+    pub fn fields(&self) -> impl Iterator<Item = &FieldQuestion> {
+        self.passages.iter().flat_map(|passage| &passage.fields)
     }
 
     /// The family with levels of measures, of which the crossings are wanted.

@@ -62,7 +62,7 @@ pub use model::Model;
 pub use noise::{Amplitude, Noise};
 pub use oscillator::VELOCITY;
 pub(crate) use oscillator::{DISPLACEMENT, FIRST_INTERNAL_STATE};
-pub use passage::{MeasureLevel, PassageQuestion, PassageStart};
+pub use passage::{FieldKind, FieldQuestion, MeasureLevel, PassageQuestion, PassageStart};
 pub use path::Path;
 pub use quantity::{AtPhase, BoundQuantity, Quantity, QuantityError, QuantityFault, quantities};
 pub use region::{Region, RegionError, RegionFault, regions};

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use crate::cancellation::Cancellation;
-use crate::continuation::{Finding, Measure, PassageFault, SolveReport};
+use crate::continuation::{Finding, Measure, PassageFault, SolveReport, StateField};
 use crate::generator::GeneratorOptions;
 use crate::method::measures::measures_of_passage;
 use crate::method::{GeneratorMethodOptions, MethodError, Problem};
-use crate::passage::{KnownDensity, Passage, PassageError, Timed, timed};
+use crate::passage::{FieldTarget, KnownDensity, Passage, PassageError, Timed, field, timed};
 use crate::stationary::generator::{RateError, RateOptions};
-use crate::system::{PassageQuestion, System};
+use crate::system::{PassageQuestion, Region, System};
 
 /// Error at which times stop to be iterated, relative to their sum. Numbers have its square: they are put right by what
 /// equations from both sides leave.
@@ -44,22 +44,38 @@ pub(super) fn add_passages(
     for (number, question) in family.passages().iter().enumerate() {
         let passage = Passage::bind(question, &values)?;
         let settings = (&generator, &rates);
-        match timed(
-            system,
-            problem.space(),
-            &passage,
-            density,
-            settings,
-            cancellation,
-        ) {
+        let space = problem.space();
+        let mut faults = Vec::new();
+        match timed(system, space, &passage, density, settings, cancellation) {
             Ok(timed) => report.measures.extend(measures(question, &timed)),
-            Err(PassageError::Rate(RateError::Cancelled(cancelled))) => {
+            Err(error) => faults.push(error),
+        }
+        for asked in &question.fields {
+            let bind = |region: &Region| region.level().bind(&values);
+            let target = FieldTarget {
+                until: bind(&asked.until)?,
+                exits: asked.exits.iter().map(bind).collect::<Result<_, _>>()?,
+                part: asked.part,
+            };
+            match field(system, space, &target, settings, cancellation) {
+                Ok(found) => report.fields.push(StateField {
+                    name: asked.name.clone(),
+                    axes: space.axes().to_vec(),
+                    values: found.values,
+                    errors: found.errors,
+                }),
+                Err(error) => faults.push(error),
+            }
+        }
+        for error in faults {
+            if let PassageError::Rate(RateError::Cancelled(cancelled)) = error {
                 return Err(cancelled.into());
             }
-            Err(error) => report.findings.push(Finding::NoPassage {
-                passage: number,
-                fault: fault(&error),
-            }),
+            let (passage, fault) = (number, fault(&error));
+            let finding = Finding::NoPassage { passage, fault };
+            if !report.findings.contains(&finding) {
+                report.findings.push(finding);
+            }
         }
     }
     Ok(())

@@ -9,7 +9,7 @@ use crate::generator::AdvectiveScheme;
 use crate::method::{Correction, DerivedMeasure, Estimator, StepChoice};
 use crate::sampling::Integrator;
 use crate::stationary::Solver;
-use crate::system::{Interpretation, Model, NoiseKind, Sides, registry};
+use crate::system::{FieldKind, Interpretation, Model, NoiseKind, Sides, registry};
 
 /// Getter and setter of a key. The second argument is the name that `<…>` stands for in the key's path.
 #[derive(Debug, Clone, Copy)]
@@ -282,6 +282,7 @@ named!(
     Integrator,
     Interpretation,
     MethodKind,
+    FieldKind,
     NoiseKind,
     Sides,
     Solver,

@@ -17,7 +17,7 @@ use crate::sampling::Integrator;
 use crate::space::MOST_MODES;
 use crate::stationary::Solver;
 use crate::sweep_file::draft::{ExponentKind, MethodKind};
-use crate::system::{Interpretation, NoiseKind, Sides, registry};
+use crate::system::{FieldKind, Interpretation, NoiseKind, Sides, registry};
 
 /// Most cells an axis may have: edges are stored, so a slip of the pen must not fill the memory.
 const MOST_CELLS: i128 = 1_000_000;
@@ -219,6 +219,8 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "Another word for `until`, which goes with `from`: `exit = { from = \"left\", to = \"right\" }`."),
     key("passage.<passage>.switching", Kind::Choice(switch), Rule("`off`"), of_passage!(switching),
         "Whether the rates from the region `from` to the region `to` and back are wanted as the slowest mode has them (docs/passage.md)."),
+    key("passage.<passage>.fields", Kind::List(&Kind::Choice(FieldKind::words)), Rule("none"), of_passage!(fields),
+        "What is wanted over all states of one or two axes in which a passage may start, as arrays of `densities.zarr` and figures: `mean-time`, and `committor`, the probability to enter the region `to` before the region `from`, or each region of `until` before the others."),
     key("passage.<passage>.times", Kind::List(&Kind::Number(POSITIVE)), Rule("none"), of_passage!(times),
         "Times at which the probability is wanted that a passage still goes on."),
     key("passage.<passage>.quantiles", Kind::List(&Kind::Number(OPEN_UNIT)), Rule("none"), of_passage!(quantiles),

@@ -6,7 +6,9 @@ use crate::sweep_file::draft::{Draft, MethodKind, PassageDraft};
 use crate::sweep_file::formula_place::inside;
 use crate::sweep_file::names::quotable;
 use crate::sweep_file::reader::Reader;
-use crate::system::{Model, PassageQuestion, PassageStart, Region, RegionError, regions};
+use crate::system::{
+    FieldKind, FieldQuestion, Model, PassageQuestion, PassageStart, Region, RegionError, regions,
+};
 
 /// The word for a start that is spread as the steady state is.
 pub(super) const DENSITY: &str = "density";
@@ -71,10 +73,11 @@ pub(super) fn read(
     };
     let questions = asked
         .into_iter()
-        .map(|(passage, (until, exits, start))| PassageQuestion {
+        .map(|(passage, Ends { until, exits, start, fields })| PassageQuestion {
             name: passage.name.clone(),
             until: read[until].clone(),
             exits: exits.into_iter().map(|part| read[part].clone()).collect(),
+            fields: fields.into_iter().map(|field| field.question(&read)).collect(),
             start: match start {
                 GivenStart::State(state) => PassageStart::State(state),
                 GivenStart::Region(region) => PassageStart::Region(read[region].clone()),
@@ -115,7 +118,15 @@ fn check_method(reader: &mut Reader<'_>, draft: &Draft) {
     });
 }
 
-/// Where a passage starts, regions by their numbers among those that are given.
+/// What a passage is between, regions by their numbers among those that are given.
+struct Ends {
+    until: usize,
+    exits: Vec<usize>,
+    start: GivenStart,
+    fields: Vec<GivenField>,
+}
+
+/// Where a passage starts.
 enum GivenStart {
     State(Vec<f64>),
     Region(usize),
@@ -128,7 +139,7 @@ fn ends(
     (draft, passage): (&Draft, &PassageDraft),
     given: &mut Vec<Given>,
     model: &Model,
-) -> Option<(usize, Vec<usize>, GivenStart)> {
+) -> Option<Ends> {
     let name = passage.name.as_str();
     let mut exits = Vec::new();
     // Any of several regions ends the passage.
@@ -182,7 +193,13 @@ fn ends(
     if passage.switching == Some(true) && !may_switch(reader, draft, passage, &start) {
         return None;
     }
-    Some((until, exits, start))
+    let fields = fields(reader, (draft, passage), given, (until, &exits, &start))?;
+    Some(Ends {
+        until,
+        exits,
+        start,
+        fields,
+    })
 }
 
 /// Whether rates between two states can be asked for: by the generator, of a passage between regions.
@@ -210,6 +227,85 @@ fn may_switch(
         return false;
     }
     true
+}
+
+/// A field of a passage, regions by their numbers.
+struct GivenField {
+    name: String,
+    kind: FieldKind,
+    until: usize,
+    exits: Vec<usize>,
+    part: Option<usize>,
+}
+
+impl GivenField {
+    fn question(self, read: &[Region]) -> FieldQuestion {
+        FieldQuestion {
+            name: self.name,
+            kind: self.kind,
+            until: read[self.until].clone(),
+            exits: self.exits.into_iter().map(|part| read[part].clone()).collect(),
+            part: self.part,
+        }
+    }
+}
+
+/// The fields of a passage: by the generator, and a committor between regions; `None` where they cannot be asked for.
+fn fields(
+    reader: &mut Reader<'_>,
+    (draft, passage): (&Draft, &PassageDraft),
+    given: &mut Vec<Given>,
+    (until, exits, start): (usize, &[usize], &GivenStart),
+) -> Option<Vec<GivenField>> {
+    let (name, mut all) = (passage.name.as_str(), Vec::new());
+    let asked = passage.fields.iter().flatten();
+    if asked.clone().next().is_some() && draft.method.kind != MethodKind::Generator {
+        let method = draft.method.kind.name();
+        let title = format!("fields of passages are worked out by `generator`, not by `{method}`");
+        let remedy = "set `method.kind = \"generator\"`, or leave `fields` out";
+        refuse(reader, name, title, remedy);
+        return None;
+    }
+    for kind in FieldKind::ALL.into_iter().filter(|kind| asked.clone().any(|one| one == kind)) {
+        let array = |of: &str| format!("{name}_{of}");
+        let mut add = |name, (until, exits): (usize, &[usize]), part| {
+            let exits = exits.to_vec();
+            all.push(GivenField { name, kind, until, exits, part });
+        };
+        match (kind, start) {
+            (FieldKind::MeanTime, _) => add(array("mean_time"), (until, &[]), None),
+            (FieldKind::Committor, _) if !exits.is_empty() => {
+                for part in 0..exits.len() {
+                    let of = format!("{}_committor", exit_label(name, part, given, exits));
+                    add(array(&of), (until, exits), Some(part));
+                }
+            }
+            (FieldKind::Committor, &GivenStart::Region(from)) => {
+                let (one, other) = (&given[from].text, &given[until].text);
+                let either = format!("({one}) or ({other})");
+                let own = ("from", format!("{name}_from_or_to"));
+                let both = region(reader, given, name, own, &either);
+                given[both].is_joined = true;
+                add(array("committor"), (both, &[from, until]), Some(1));
+            }
+            (FieldKind::Committor, _) => {
+                let title = format!("passage `{name}` asks for a committor, and is not between regions");
+                let remedy = "give the two regions as `from` and `to`, or as a list of `until`";
+                refuse(reader, name, title, remedy);
+                return None;
+            }
+        }
+    }
+    Some(all)
+}
+
+/// What arrays call a region of several that end a passage.
+fn exit_label(passage: &str, part: usize, given: &[Given], exits: &[usize]) -> String {
+    let known = &given[exits[part]].name;
+    match *known == PassageQuestion::exit_name(passage, part) {
+        true => (part + 1).to_string(),
+        false => known.clone(),
+    }
 }
 
 /// The number of a region that a passage names, or gives as an inequality.
