@@ -11,9 +11,10 @@ use std::sync::Arc;
 
 use super::cells::cells;
 use super::exits::Exits;
-use super::rim::{mend, rim};
+use super::nodes::{FEWER_NODES, NODES};
+use super::rim::{beside_border, mend, rim};
 use super::solve::enclosed;
-use super::start::at_states_of;
+use super::start::{at_state, at_states_of};
 use super::timed::{BORDER_ORDER, DAMPED, FEWER};
 use super::{Passage, PassageError, Start};
 use crate::cancellation::Cancellation;
@@ -173,11 +174,19 @@ impl FieldQuestion<'_> {
         mend(&mut halved, &rim, |_| 0.0);
         mend(&mut border, &rim, |_| 0.0);
         let places: Vec<Vec<f64>> = self.space.axes().iter().map(|axis| axis.centres()).collect();
-        let at = |field: &[f64]| at_states_of(&places, (&space, &full.kept), until, field);
+        let (system, kept) = (self.system.as_ref(), (&space, full.kept.as_slice()));
+        let at = |field: &[f64], on_border: &dyn Fn(&[f64]) -> f64| {
+            let inner = |state: &[f64]| at_state(kept, state, FEWER_NODES, field);
+            let near = |state: &[f64]| {
+                let found = beside_border(system, (&space, until), state, inner, on_border);
+                found.or_else(|| at_state(kept, state, NODES, field))
+            };
+            at_states_of(&places, kept, until, field, near)
+        };
         Ok(OnGrid {
-            values: at(&values),
-            halved: at(&halved),
-            border: at(&border),
+            values: at(&values, &|state| self.inside(state)),
+            halved: at(&halved, &|_| 0.0),
+            border: at(&border, &|_| 0.0),
         })
     }
 

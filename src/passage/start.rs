@@ -83,16 +83,32 @@ pub(super) fn at_nodes_of(
     field: &[f64],
 ) -> Vec<Option<f64>> {
     let places: Vec<Vec<f64>> = other.axes().iter().map(|axis| axis.nodes().to_vec()).collect();
-    at_states_of(&places, cells, until, field)
+    let near = |state: &[f64]| at_state(cells, state, NODES, field);
+    at_states_of(&places, cells, until, field, near)
+}
+
+/// A field that is known at the kept nodes of a space, at a state, by polynomials through so many nodes an axis.
+pub(super) fn at_state(
+    (space, kept): (&CellSpace, &[bool]),
+    state: &[f64],
+    nodes: usize,
+    field: &[f64],
+) -> Option<f64> {
+    let mut value = 0.0;
+    around(space, kept, state, nodes, |cell, weight| {
+        value += weight * field[cell];
+    })
+    .then_some(value)
 }
 
 /// A field that is known at the kept nodes of a space, at all states with some coordinates along each axis, those of
-/// the last axis fastest; `None` inside the target.
+/// the last axis fastest; `None` inside the target. What it is at a state near the target, `near` says.
 pub(super) fn at_states_of(
     places: &[Vec<f64>],
     (space, kept): (&CellSpace, &[bool]),
     until: &BoundQuantity,
     field: &[f64],
+    near: impl Fn(&[f64]) -> Option<f64>,
 ) -> Vec<Option<f64>> {
     let axes: Vec<Vec<AxisWeights>> = (space.axes().iter().zip(places))
         .map(|(own, places)| places.iter().map(|&x| about(own, x, NODES)).collect())
@@ -112,11 +128,7 @@ pub(super) fn at_states_of(
         if is_whole[number] {
             return Some(values[number]);
         }
-        let mut value = 0.0;
-        around(space, kept, state, NODES, |cell, weight| {
-            value += weight * field[cell];
-        })
-        .then_some(value)
+        near(state)
     };
     (0..values.len()).map(one).collect()
 }

@@ -125,7 +125,8 @@ fn probe() {
         (i1, i2)
     };
     let (w1, w2) = upto(b);
-    for n in [40, 80, 160] {
+    for n in [40, 80, 120, 160, 240, 320, 640] {
+        let t = super::passages::passage(&ou, "x < -1.2 or x > 1.73", &[0.7421875], &[(-2.0, 2.5, n)]); println!("timed {n}: {:.3e} +- {:.1e}", t.mean.0 - 1.5021202072588888, t.mean.1);
         let f = found(&ou, &["x < -1.2", "x > 1.73"], None, &[(-2.0, 2.5, n)]);
         f.holds(&format!("ou interval {n}"), 1.0, |st| {
             let x = st[0];
@@ -137,7 +138,7 @@ fn probe() {
     // Double well mean time from below 0.37
     let u = |x: f64| x.powi(4) / 4.0 - x * x / 2.0;
     let table = { // T(x)
-        let low = -3.0; let end = 0.37; let n = 200_000; let h = (end - low) / n as f64;
+        let low = -2.0; let end = 0.37; let n = 200_000; let h = (end - low) / n as f64;
         let mut inner = 0.0; let mut outer = vec![0.0; n];
         for k in 0..n { let z = low + (k as f64 + 0.5) * h; let w = (-u(z) / d).exp() * h; outer[k] = (u(z) / d).exp() / d * (inner + 0.5 * w) * h; inner += w; }
         let mut t = vec![0.0; n + 1];
