@@ -75,7 +75,6 @@ pub use error::SweepError;
 pub(crate) use finding::tests::every_finding;
 pub use finding::{Finding, PassageFault, ShiftedQuantity, SteadyClass};
 pub use fluctuations::Fluctuations;
-pub use state_field::StateField;
 pub use grid::CheckedIndicator;
 pub use label::{Label, Located, RowWords, Zero};
 pub use levels::{LevelCrossing, SpectralChange};
@@ -88,6 +87,7 @@ pub use shard::Shard;
 pub use source::{
     CellCheck, DensitySource, Sensitivity, Session, Solution, SourceError, Subject, Want,
 };
+pub use state_field::StateField;
 pub(crate) use sweep::sweep_shard;
 pub use sweep::{evenly_spaced, sweep};
 

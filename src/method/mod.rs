@@ -117,6 +117,14 @@ pub enum MethodError {
         /// Whether one carries a series.
         has_series: bool,
     },
+    /// Monte Carlo, of a passage with the basin of a peak.
+    #[error(
+        "passage `{passage}` has the basin of a peak, which is found by the generator alone: give an inequality in its place"
+    )]
+    Basin {
+        /// Name of the passage.
+        passage: String,
+    },
     /// A forcing whose phase does not move, or runs backwards.
     #[error(
         "the frequency of the forcing is {frequency} periods per unit of time at {parameter} = {value}; it must be positive"

@@ -90,10 +90,17 @@ pub fn field(
         || rayon::join(|| solve(more), || solve(fewest)),
     );
     let (finest, coarse, coarsest) = (finest?, coarse?, coarsest?);
-    let mut errors: Vec<f64> = finest.halved.iter().map(|change| DAMPED * size(*change)).collect();
+    let mut errors: Vec<f64> = finest
+        .halved
+        .iter()
+        .map(|change| DAMPED * size(*change))
+        .collect();
     let mut border: Vec<f64> = finest.border.iter().map(|change| size(*change)).collect();
     for (other, factor, times) in [(coarse, more, of_more), (coarsest, fewest, of_fewest)] {
-        for (error, (own, other)) in errors.iter_mut().zip(finest.values.iter().zip(&other.values)) {
+        for (error, (own, other)) in errors
+            .iter_mut()
+            .zip(finest.values.iter().zip(&other.values))
+        {
             let change = own.zip(*other).map(|(own, other)| own - other);
             *error = error.max(times * size(change));
         }
@@ -102,7 +109,10 @@ pub fn field(
             *error = error.max(scale * size(*change));
         }
     }
-    let errors = errors.iter().zip(border).map(|(error, border)| error + border);
+    let errors = errors
+        .iter()
+        .zip(border)
+        .map(|(error, border)| error + border);
     let errors = greatest_beside(space, &errors.collect::<Vec<f64>>());
     Ok(question.whole(&finest.values, &errors))
 }
@@ -149,7 +159,11 @@ impl FieldQuestion<'_> {
             None => generator.weights[0].clone(),
         };
         let kept = full.kept.iter().filter(|&&kept| kept).count() as f64;
-        let even: Vec<f64> = full.kept.iter().map(|&is| f64::from(u8::from(is)) / kept).collect();
+        let even: Vec<f64> = full
+            .kept
+            .iter()
+            .map(|&is| f64::from(u8::from(is)) / kept)
+            .collect();
         let matrix = full.matrix();
         let mut solver = AbsorbingSolver::new(&space, self.rates, self.cancellation);
         let (stage, _) = solver.stage(&matrix, &full.ends, &even)?;
@@ -162,7 +176,11 @@ impl FieldQuestion<'_> {
         if self.target.part.is_none() {
             // Another way to end sums at an oblique border.
             let [one, other] = &full.weights;
-            let change: Vec<f64> = one.iter().zip(other).map(|(one, other)| other - one).collect();
+            let change: Vec<f64> = one
+                .iter()
+                .zip(other)
+                .map(|(one, other)| other - one)
+                .collect();
             let change = solver.expected(&stage, &change)?.values();
             let pairs = border.iter_mut().zip(change);
             pairs.for_each(|(border, change)| *border = border.abs() + change.abs());
@@ -173,7 +191,12 @@ impl FieldQuestion<'_> {
         mend(&mut values, &rim, |state| self.inside(state));
         mend(&mut halved, &rim, |_| 0.0);
         mend(&mut border, &rim, |_| 0.0);
-        let places: Vec<Vec<f64>> = self.space.axes().iter().map(|axis| axis.centres()).collect();
+        let places: Vec<Vec<f64>> = self
+            .space
+            .axes()
+            .iter()
+            .map(|axis| axis.centres())
+            .collect();
         let (system, kept) = (self.system.as_ref(), (&space, full.kept.as_slice()));
         let at = |field: &[f64], on_border: &dyn Fn(&[f64]) -> f64| {
             let inner = |state: &[f64]| at_state(kept, state, FEWER_NODES, field);
@@ -192,11 +215,19 @@ impl FieldQuestion<'_> {
 
     /// The field with what it is inside the target, within the values that it can have.
     fn whole(&self, values: &[Option<f64>], errors: &[f64]) -> PassageField {
-        let most = if self.target.part.is_some() { 1.0 } else { f64::INFINITY };
+        let most = if self.target.part.is_some() {
+            1.0
+        } else {
+            f64::INFINITY
+        };
         let of_cell = |(cell, (value, error)): (usize, (&Option<f64>, &f64))| {
             let state = self.space.centre(cell);
             match value {
-                Some(value) => (value.clamp(0.0, most), *error),
+                // No value that it can have is farther away than the ends of their range.
+                Some(value) => {
+                    let value = value.clamp(0.0, most);
+                    (value, error.min(value.max(most - value)))
+                }
                 None if self.target.until.at(&state) < 0.0 => (self.inside(&state), 0.0),
                 // No node of the grid is near.
                 None => (f64::NAN, f64::NAN),
@@ -212,7 +243,9 @@ impl FieldQuestion<'_> {
             return 0.0;
         };
         let levels = self.target.exits.iter().map(|exit| exit.at(state));
-        let least = levels.enumerate().min_by(|one, other| one.1.total_cmp(&other.1));
+        let least = levels
+            .enumerate()
+            .min_by(|one, other| one.1.total_cmp(&other.1));
         f64::from(u8::from(least.is_some_and(|(found, _)| found == part)))
     }
 }

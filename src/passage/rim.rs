@@ -34,7 +34,9 @@ pub(super) fn rim(
         found.min_by(|one, other| one.0.total_cmp(&other.0))
     };
     let cells = (0..kept.len()).filter(|&cell| kept[cell]);
-    cells.filter_map(|cell| nearest(cell).map(|(_, found)| found)).collect()
+    cells
+        .filter_map(|cell| nearest(cell).map(|(_, found)| found))
+        .collect()
 }
 
 /// What replaces the value of a cell, and how many cells away the border is along a side of an axis; `None` where it is
@@ -51,7 +53,9 @@ fn beside(
     let (place, node) = (space.position(cell, index) as isize, space.node(cell));
     let at = |steps: isize| {
         let steps = side * steps;
-        let position = usize::try_from(place + steps).ok().filter(|&at| at < axis.count())?;
+        let position = usize::try_from(place + steps)
+            .ok()
+            .filter(|&at| at < axis.count())?;
         let number = cell as isize + steps * stride as isize;
         Some((number as usize, axis.nodes()[position]))
     };
@@ -63,7 +67,11 @@ fn beside(
         .collect::<Option<_>>()?;
     let (last, beyond) = (at(outer - 1)?.1, at(outer)?.1);
     let (border, share) = border_between((level, &node, index), (last, beyond));
-    let places: Vec<f64> = inner.iter().map(|one| one.1).chain([border[index]]).collect();
+    let places: Vec<f64> = inner
+        .iter()
+        .map(|one| one.1)
+        .chain([border[index]])
+        .collect();
     let weights = lagrange(&places, node[index]);
     let replaced = RimCell {
         cell,
@@ -92,7 +100,10 @@ fn border_between(
 /// Weights of values at some places in the polynomial through them, at another place.
 fn lagrange(places: &[f64], at: f64) -> Vec<f64> {
     let weight = |index: usize| {
-        let others = places.iter().enumerate().filter(|(other, _)| *other != index);
+        let others = places
+            .iter()
+            .enumerate()
+            .filter(|(other, _)| *other != index);
         others.fold(1.0, |product, (_, place)| {
             product * (at - place) / (places[index] - place)
         })
@@ -141,7 +152,11 @@ pub(super) fn beside_border(
 pub(super) fn mend(field: &mut [f64], rim: &[RimCell], on_border: impl Fn(&[f64]) -> f64) {
     let before = field.to_vec();
     for one in rim {
-        let inner: f64 = one.inner.iter().map(|&(cell, weight)| weight * before[cell]).sum();
+        let inner: f64 = one
+            .inner
+            .iter()
+            .map(|&(cell, weight)| weight * before[cell])
+            .sum();
         let (state, weight) = &one.border;
         field[one.cell] = inner + weight * on_border(state);
     }

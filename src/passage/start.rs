@@ -82,7 +82,11 @@ pub(super) fn at_nodes_of(
     until: &BoundQuantity,
     field: &[f64],
 ) -> Vec<Option<f64>> {
-    let places: Vec<Vec<f64>> = other.axes().iter().map(|axis| axis.nodes().to_vec()).collect();
+    let places: Vec<Vec<f64>> = other
+        .axes()
+        .iter()
+        .map(|axis| axis.nodes().to_vec())
+        .collect();
     let near = |state: &[f64]| at_state(cells, state, NODES, field);
     at_states_of(&places, cells, until, field, near)
 }

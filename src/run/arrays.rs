@@ -330,7 +330,10 @@ pub(super) fn names(family: &Family, observables: &[Observable]) -> Vec<Named> {
     }
     for field in family.fields() {
         let words = field_words(&field.name);
-        names.push(Named::new(field_error(&field.name), format!("error of the {words}")));
+        names.push(Named::new(
+            field_error(&field.name),
+            format!("error of the {words}"),
+        ));
         names.push(Named::new(field.name.as_str(), words));
     }
     for &observable in observables {

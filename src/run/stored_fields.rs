@@ -39,7 +39,9 @@ impl StoredFields {
         }
         let values = match fields.is_empty() {
             true => Vec::new(),
-            false => array(family.parameter())?.line().map_err(|error| unreadable(path, &error))?,
+            false => array(family.parameter())?
+                .line()
+                .map_err(|error| unreadable(path, &error))?,
         };
         Ok(Self {
             path: path.to_owned(),

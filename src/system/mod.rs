@@ -65,7 +65,7 @@ pub(crate) use oscillator::{DISPLACEMENT, FIRST_INTERNAL_STATE};
 pub use passage::{FieldKind, FieldQuestion, MeasureLevel, PassageQuestion, PassageStart};
 pub use path::Path;
 pub use quantity::{AtPhase, BoundQuantity, Quantity, QuantityError, QuantityFault, quantities};
-pub use region::{Region, RegionError, RegionFault, regions};
+pub use region::{Basin, Region, RegionError, RegionFault, regions};
 pub use spectrum::{Band, Fluctuating, Sides, SpectrumQuestion};
 pub(crate) use symmetry::{proved_symmetry, symmetry_over_a_period};
 pub use tangent::TangentFault;

@@ -24,6 +24,15 @@ pub struct PassageQuestion {
 }
 
 impl PassageQuestion {
+    /// Whether it starts in the basin of a peak, or ends there.
+    pub fn has_basins(&self) -> bool {
+        let start = match &self.start {
+            PassageStart::Region(region) => region.basin(),
+            PassageStart::State(_) | PassageStart::Density => None,
+        };
+        self.until.basin().or(start).is_some()
+    }
+
     /// What columns call a part of the region that ends the passage: its name, or its number from 1 on where the
     /// question itself gives it.
     pub fn exit_label(&self, part: usize) -> String {

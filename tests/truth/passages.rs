@@ -15,7 +15,7 @@ use crate::common::numbers::{Numbers, given};
 use crate::common::steady::{even_cells, model};
 
 /// The numbers of a passage from a state until an inequality holds.
-pub(crate) fn passage(model: &Arc<Model>, until: &str, start: &[f64], axes: &[(f64, f64, usize)]) -> Timed {
+fn passage(model: &Arc<Model>, until: &str, start: &[f64], axes: &[(f64, f64, usize)]) -> Timed {
     asked(model, until, start, axes, (&[], &[]))
 }
 

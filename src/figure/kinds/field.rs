@@ -75,21 +75,35 @@ fn title(asked: &FieldQuestion) -> &'static str {
 
 /// What a field is, for captions.
 fn words(asked: &FieldQuestion) -> String {
-    let [until, part] = [Some(&asked.until), asked.part.and_then(|part| asked.exits.get(part))]
-        .map(|region| region.map_or("", |region| region.text()));
+    let [until, part] = [
+        Some(&asked.until),
+        asked.part.and_then(|part| asked.exits.get(part)),
+    ]
+    .map(|region| region.map_or("", |region| region.text()));
     match asked.kind {
-        FieldKind::MeanTime => format!("Mean time until {until}, over the state where a process starts"),
+        FieldKind::MeanTime => {
+            format!("Mean time until {until}, over the state where a process starts")
+        }
         FieldKind::Committor => format!(
             "Committor: probability to enter {part} before any other part of {until}, over the state where a process starts"
         ),
     }
 }
 
-fn draw_curves(result: &SweepResult, chosen: &[&Point], asked: &FieldQuestion, print: &Print<'_>) -> Drawn {
+fn draw_curves(
+    result: &SweepResult,
+    chosen: &[&Point],
+    asked: &FieldQuestion,
+    print: &Print<'_>,
+) -> Drawn {
     let family = &result.subject.family;
     let line = |point: &&Point| {
         let field = of_point(point, asked)?;
-        let known = field.values.iter().copied().zip(field.errors.iter().copied());
+        let known = field
+            .values
+            .iter()
+            .copied()
+            .zip(field.errors.iter().copied());
         let places = field.axes.first()?.centres().into_iter().zip(known);
         Some(Line {
             value: point.value,
@@ -136,10 +150,14 @@ impl<'a> FieldMap<'a> {
     fn picture(&self, look: &Look, map: Rectangle) -> Picture {
         let size = (resolution(map.width), resolution(map.height));
         let [x, y] = &self.places;
-        let across: Vec<(usize, f64)> =
-            middles(self.ranges[0], size.0).into_iter().map(|at| beside(x, at)).collect();
-        let up: Vec<(usize, f64)> =
-            middles(self.ranges[1], size.1).into_iter().map(|at| beside(y, at)).collect();
+        let across: Vec<(usize, f64)> = middles(self.ranges[0], size.0)
+            .into_iter()
+            .map(|at| beside(x, at))
+            .collect();
+        let up: Vec<(usize, f64)> = middles(self.ranges[1], size.1)
+            .into_iter()
+            .map(|at| beside(y, at))
+            .collect();
         let value = |i: usize, j: usize| self.field.values[i * y.len() + j];
         Picture::new(look, size, |column, row| {
             let ((i, s), (j, t)) = (across[column], up[row]);
@@ -172,7 +190,10 @@ fn draw_borders(
 ) -> Option<()> {
     let values = result.subject.family.values_at(value).ok()?;
     let [x, y] = ranges.map(|range| middles(range, SQUARES));
-    let parts = asked.exits.iter().chain(asked.exits.is_empty().then_some(&asked.until));
+    let parts = asked
+        .exits
+        .iter()
+        .chain(asked.exits.is_empty().then_some(&asked.until));
     for (number, region) in parts.enumerate() {
         let inside = f64::from(u8::from(asked.part == Some(number)));
         let stroke = border(on_heat(look, inside));
@@ -192,7 +213,12 @@ fn draw_borders(
     Some(())
 }
 
-fn draw_map(result: &SweepResult, point: &Point, asked: &FieldQuestion, print: &Print<'_>) -> Drawn {
+fn draw_map(
+    result: &SweepResult,
+    point: &Point,
+    asked: &FieldQuestion,
+    print: &Print<'_>,
+) -> Drawn {
     let family = &result.subject.family;
     let drawn = FieldMap::new(of_point(point, asked)?)?;
     // Times and probabilities are read from zero on, whatever densities have.
@@ -209,7 +235,10 @@ fn draw_map(result: &SweepResult, point: &Point, asked: &FieldQuestion, print: &
     let across = Scale::horizontal(look, x, wide, &names::axis(family, 0));
     let width = left + wide + bar.width() + MARGIN;
     let heading = Heading::new(look, print.title, width);
-    let entries = vec![(Swatch::Curve(border(INK)), "border of the target".to_owned())];
+    let entries = vec![(
+        Swatch::Curve(border(INK)),
+        "border of the target".to_owned(),
+    )];
     let legend = Legend::new(look, entries, width - 2.0 * MARGIN);
     let map = Rectangle::new((left, heading.height() + ColourBar::above()), (wide, high));
     let below = map.bottom() + Scale::below();
@@ -217,7 +246,10 @@ fn draw_map(result: &SweepResult, point: &Point, asked: &FieldQuestion, print: &
     heading.draw(&page);
     write_above(&page, map, names::at(family, point.value));
     let panel = page.panel(map, x, y);
-    panel.draw(&[(x.0, y.0), (x.1, y.1)], Shape::Image(drawn.picture(look, map)));
+    panel.draw(
+        &[(x.0, y.0), (x.1, y.1)],
+        Shape::Image(drawn.picture(look, map)),
+    );
     drawn.draw_contours(look, &panel);
     draw_borders(result, (asked, point.value), (look, &panel), drawn.ranges);
     frame::border(&page, map);
@@ -233,7 +265,11 @@ fn draw_map(result: &SweepResult, point: &Point, asked: &FieldQuestion, print: &
         caption::number(errors.fold(0.0, |most: f64, error| most.max(*error))),
     );
     let caption = caption::of_sweep(result, seen, &[]);
-    Some(Figure::new(&page, caption, rows(result, point.value, &drawn)))
+    Some(Figure::new(
+        &page,
+        caption,
+        rows(result, point.value, &drawn),
+    ))
 }
 
 /// The cell below a place among centres, and how far the place is on the way to the next.
@@ -247,11 +283,24 @@ fn beside(centres: &[f64], place: f64) -> (usize, f64) {
 fn rows(result: &SweepResult, value: f64, drawn: &FieldMap<'_>) -> String {
     let family = &result.subject.family;
     let [x, y] = &drawn.places;
-    let numbers = drawn.field.values.iter().zip(&drawn.field.errors).enumerate();
+    let numbers = drawn
+        .field
+        .values
+        .iter()
+        .zip(&drawn.field.errors)
+        .enumerate();
     let rows = numbers.map(|(cell, (field, error))| {
         let (i, j) = (cell / y.len(), cell % y.len());
-        [value, x[i], y[j], *field, *error].map(table::number).to_vec()
+        [value, x[i], y[j], *field, *error]
+            .map(table::number)
+            .to_vec()
     });
-    let columns = [family.parameter(), family.axis(0), family.axis(1), "value", "error"];
+    let columns = [
+        family.parameter(),
+        family.axis(0),
+        family.axis(1),
+        "value",
+        "error",
+    ];
     table::table(&columns, rows)
 }

@@ -293,7 +293,12 @@ fn density_arrays(
 /// A field of a passage and its error, where a point has it.
 fn field_arrays(family: &Family, points: &[&Point], name: &str) -> Vec<NamedArray> {
     let of = |point: &&Point| -> Option<StateField> {
-        point.report.fields.iter().find(|one| one.name == name).cloned()
+        point
+            .report
+            .fields
+            .iter()
+            .find(|one| one.name == name)
+            .cloned()
     };
     let found: Vec<Option<StateField>> = points.iter().map(of).collect();
     let Some(like) = found.iter().flatten().next() else {
@@ -301,16 +306,27 @@ fn field_arrays(family: &Family, points: &[&Point], name: &str) -> Vec<NamedArra
     };
     Layout::field(family, like)
         .into_iter()
-        .zip([|one: &StateField| one.values.clone(), |one: &StateField| one.errors.clone()])
+        .zip([
+            |one: &StateField| one.values.clone(),
+            |one: &StateField| one.errors.clone(),
+        ])
         .map(|(layout, numbers)| {
-            let mut dimensions: Vec<(String, usize)> = layout.dimensions.iter()
+            let mut dimensions: Vec<(String, usize)> = layout
+                .dimensions
+                .iter()
                 .map(|(name, length)| (name.clone(), *length as usize))
                 .collect();
             dimensions[0].1 = points.len();
             let none = vec![f64::NAN; like.values.len()];
-            let values = found.iter().flat_map(|one| one.as_ref().map_or(none.clone(), numbers));
+            let values = found
+                .iter()
+                .flat_map(|one| one.as_ref().map_or(none.clone(), numbers));
             let words = arrays::field_words(name);
-            let words = if layout.name == name { words } else { format!("error of the {words}") };
+            let words = if layout.name == name {
+                words
+            } else {
+                format!("error of the {words}")
+            };
             NamedArray::new(layout.name, dimensions, values.collect(), words)
         })
         .collect()

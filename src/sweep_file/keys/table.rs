@@ -193,7 +193,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
             get: |draft, name| draft.regions.iter().find(|(known, _)| known == name).map(|(_, text)| text.to_plain()),
             set: |draft, name, plain| super::field::set_formulas(&mut draft.regions, name, plain),
         },
-        "A region of the state by inequalities, for example `left = \"x < -0.2 and y > 0\"`, joined by `and`, `or`, `not`; names of other regions may stand in it."),
+        "A region of the state by inequalities, for example `left = \"x < -0.2 and y > 0\"`, joined by `and`, `or`, `not`; names of other regions may stand in it. Or the basin of a peak of a watched density: `peak 2 of x`, the second from the left."),
     key("passage.<passage>.from", Kind::Text, Rule("`start`"), of_passage!(from),
         "Where a passage starts: in a region (by its name, or an inequality), spread as the steady state is there, or `density`, spread as it is everywhere."),
     key("passage.<passage>.start.<axis>", Kind::Number(ANY), Rule("`from`"),

@@ -129,7 +129,12 @@ impl Settings {
         let family = swept.family.with_quantities(watched.quantities);
         swept.family = family.with_averaged(watched.averaged);
         swept.family = walls::read(&mut reader, &draft, swept.family, &axes);
-        let (regions, questions) = passages::read(&mut reader, &draft, swept.family.model());
+        let (regions, questions) = passages::read(
+            &mut reader,
+            &draft,
+            swept.family.model(),
+            &watched.observables,
+        );
         swept.family = swept.family.with_passages(regions, questions);
         swept.family = exponent::read(&mut reader, &draft, swept.family);
         swept.family = relaxation::read(&mut reader, &draft, swept.family);

@@ -1,5 +1,6 @@
 //! Regions and questions of first passage as a file has them, with the place of everything that is wrong with them.
 
+use crate::density::Observable;
 use crate::formula::language::check_name;
 use crate::sweep_file::diagnostic::{Diagnostic, Place};
 use crate::sweep_file::draft::{Draft, MethodKind, PassageDraft};
@@ -27,6 +28,7 @@ pub(super) fn read(
     reader: &mut Reader<'_>,
     draft: &Draft,
     model: &Model,
+    watched: &[Observable],
 ) -> (Vec<Region>, Vec<PassageQuestion>) {
     let mut given = Vec::new();
     for entry in reader.entries(&["regions"]) {
@@ -71,13 +73,23 @@ pub(super) fn read(
             return (Vec::new(), Vec::new());
         }
     };
-    let questions = asked
-        .into_iter()
-        .map(|(passage, Ends { until, exits, start, fields })| PassageQuestion {
+    let questions = asked.into_iter().map(
+        |(
+            passage,
+            Ends {
+                until,
+                exits,
+                start,
+                fields,
+            },
+        )| PassageQuestion {
             name: passage.name.clone(),
             until: read[until].clone(),
             exits: exits.into_iter().map(|part| read[part].clone()).collect(),
-            fields: fields.into_iter().map(|field| field.question(&read)).collect(),
+            fields: fields
+                .into_iter()
+                .map(|field| field.question(&read))
+                .collect(),
             start: match start {
                 GivenStart::State(state) => PassageStart::State(state),
                 GivenStart::Region(region) => PassageStart::Region(read[region].clone()),
@@ -86,9 +98,60 @@ pub(super) fn read(
             switching: passage.switching == Some(true),
             times: ascending(passage.times.as_ref()),
             quantiles: ascending(passage.quantiles.as_ref()),
-        });
-    let questions = questions.collect();
+        },
+    );
+    let questions: Vec<PassageQuestion> = questions.collect();
+    for question in &questions {
+        check_basins(reader, (draft, model), question, watched);
+    }
     (read.into_iter().take(named).collect(), questions)
+}
+
+/// The basin of a peak is known to the generator at each value, from a density that is watched.
+fn check_basins(
+    reader: &mut Reader<'_>,
+    (draft, model): (&Draft, &Model),
+    question: &PassageQuestion,
+    watched: &[Observable],
+) {
+    let start = match &question.start {
+        PassageStart::Region(region) => Some(region),
+        PassageStart::State(_) | PassageStart::Density => None,
+    };
+    let basins = [Some(&question.until), start]
+        .into_iter()
+        .flatten()
+        .filter_map(Region::basin);
+    for basin in basins {
+        let (name, axis) = (&question.name, &model.axes[basin.axis].name);
+        let is_watched = watched.contains(&Observable::Marginal(basin.axis));
+        let (title, remedy) = if draft.method.kind != MethodKind::Generator {
+            let title = format!(
+                "passage `{name}` is to the basin of a peak, which is found by `generator` alone"
+            );
+            (
+                title,
+                "set `method.kind = \"generator\"`, or give an inequality".to_owned(),
+            )
+        } else if !question.fields.is_empty() || question.switching {
+            let title = format!(
+                "passage `{name}` has the basin of a peak, and asks for fields or rates between states"
+            );
+            (
+                title,
+                "give inequalities, or leave `fields` and `switching` out".to_owned(),
+            )
+        } else if !is_watched {
+            let title = format!(
+                "passage `{name}` has the basin of a peak of `{axis}`, whose density is not watched"
+            );
+            (title, format!("add \"{axis}\" to `detect.marginals`"))
+        } else {
+            continue;
+        };
+        refuse(reader, name, title, &remedy);
+        return;
+    }
 }
 
 /// Numbers in their order, each once.
@@ -146,11 +209,17 @@ fn ends(
     let either = passage.exits.as_ref().map(|parts| {
         let texts = parts.iter().enumerate().map(|(part, text)| {
             let own = PassageQuestion::exit_name(name, part);
-            exits.push(region(reader, given, name, ("until", own), text));
+            let number = region(reader, given, name, ("until", own), text);
+            exits.push(number);
             format!("({text})")
         });
         texts.collect::<Vec<_>>().join(" or ")
     });
+    if exits.iter().any(|&part| is_basin(&given[part].text)) {
+        let title = format!("passage `{name}` has the basin of a peak among several regions");
+        refuse(reader, name, title, "give inequalities, or the basin alone");
+        return None;
+    }
     let (word, until) = match (either.as_ref().or(passage.until.as_ref()), &passage.to) {
         (Some(until), None) => ("until", until),
         (None, Some(to)) => ("to", to),
@@ -244,7 +313,11 @@ impl GivenField {
             name: self.name,
             kind: self.kind,
             until: read[self.until].clone(),
-            exits: self.exits.into_iter().map(|part| read[part].clone()).collect(),
+            exits: self
+                .exits
+                .into_iter()
+                .map(|part| read[part].clone())
+                .collect(),
             part: self.part,
         }
     }
@@ -266,11 +339,20 @@ fn fields(
         refuse(reader, name, title, remedy);
         return None;
     }
-    for kind in FieldKind::ALL.into_iter().filter(|kind| asked.clone().any(|one| one == kind)) {
+    for kind in FieldKind::ALL
+        .into_iter()
+        .filter(|kind| asked.clone().any(|one| one == kind))
+    {
         let array = |of: &str| format!("{name}_{of}");
         let mut add = |name, (until, exits): (usize, &[usize]), part| {
             let exits = exits.to_vec();
-            all.push(GivenField { name, kind, until, exits, part });
+            all.push(GivenField {
+                name,
+                kind,
+                until,
+                exits,
+                part,
+            });
         };
         match (kind, start) {
             (FieldKind::MeanTime, _) => add(array("mean_time"), (until, &[]), None),
@@ -282,6 +364,12 @@ fn fields(
             }
             (FieldKind::Committor, &GivenStart::Region(from)) => {
                 let (one, other) = (&given[from].text, &given[until].text);
+                if is_basin(one) || is_basin(other) {
+                    let title =
+                        format!("passage `{name}` asks for a committor between basins of peaks");
+                    refuse(reader, name, title, "give inequalities as `from` and `to`");
+                    return None;
+                }
                 let either = format!("({one}) or ({other})");
                 let own = ("from", format!("{name}_from_or_to"));
                 let both = region(reader, given, name, own, &either);
@@ -289,7 +377,8 @@ fn fields(
                 add(array("committor"), (both, &[from, until]), Some(1));
             }
             (FieldKind::Committor, _) => {
-                let title = format!("passage `{name}` asks for a committor, and is not between regions");
+                let title =
+                    format!("passage `{name}` asks for a committor, and is not between regions");
                 let remedy = "give the two regions as `from` and `to`, or as a list of `until`";
                 refuse(reader, name, title, remedy);
                 return None;
@@ -297,6 +386,12 @@ fn fields(
         }
     }
     Some(all)
+}
+
+/// Whether a region is the basin of a peak, as `peak 2 of x` is.
+fn is_basin(text: &str) -> bool {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    matches!(words[..], ["peak", _, "of", _])
 }
 
 /// What arrays call a region of several that end a passage.
