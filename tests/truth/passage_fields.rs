@@ -75,7 +75,7 @@ impl Found {
             all.stated = all.stated.max(error);
             all.share = all.share.max(off / (error + digits));
         }
-        println!("{what}: {all:.2e?}");
+        println!("{what}: {all:?}");
         assert!(all.states > 0);
         all
     }

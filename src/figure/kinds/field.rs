@@ -1,5 +1,5 @@
 //! Fields of passages over the state where they start (`field_exit_mean_time`, `field_exit_committor`): over two axes a
-//! map at each chosen value, with contours and the border of the target; over one axis curves with the bands of their
+//! map at each chosen value and a sheet of all, with contours and the border of the target; over one axis curves with the bands of their
 //! errors.
 
 use super::spectrum::{Chart, Line};
@@ -12,7 +12,7 @@ use crate::figure::canvas::heat::Picture;
 use crate::figure::canvas::legend::{Legend, Swatch};
 use crate::figure::canvas::look::{Look, on_heat};
 use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape};
-use crate::figure::canvas::style::{Colour, INK, MARGIN, Stroke};
+use crate::figure::canvas::style::{Colour, INK, MARGIN, Stroke, TEXT};
 use crate::figure::parts::joint_map::write_above;
 use crate::figure::parts::view::{middles, resolution};
 use crate::figure::parts::{caption, names, table};
@@ -22,8 +22,14 @@ use crate::system::{FieldKind, FieldQuestion};
 /// Contours are drawn at these shares of the largest value, that of one half wider.
 const LEVELS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 const HALF: f64 = 0.5;
-/// Side of a map, in pixels.
+/// Side of a map by itself and of one on a sheet, the narrowest one there, and the highest, in pixels.
 const SIDE: f64 = 290.0;
+const SMALL: f64 = 190.0;
+const NARROWEST: f64 = 104.0;
+const TALLEST: f64 = 290.0;
+/// Gap between maps, and most of them beside each other.
+const BETWEEN: f64 = 22.0;
+const MOST_COLUMNS: usize = 3;
 /// Squares along each axis on which the border of a target is followed.
 const SQUARES: usize = 240;
 /// What lies so near to the chord of a border, in pixels, is left out.
@@ -52,9 +58,15 @@ fn sketches<'a>(sweep: &Sweep<'a>) -> Vec<Sketch<'a>> {
             }));
             continue;
         }
+        let chosen = sweep.chosen.clone();
+        let sheet = move |print: &Print<'_>| match chosen.len() {
+            0 | 1 => None,
+            _ => draw_maps(result, &chosen, asked, print),
+        };
+        all.push(Sketch::new(name.as_str(), sheet));
         all.extend(sweep.chosen.iter().map(|&point| {
             let name = names::at_value(&name, point.value);
-            Sketch::new(name, move |print| draw_map(result, point, asked, print))
+            Sketch::new(name, move |print| draw_maps(result, &[point], asked, print))
         }));
     }
     all
@@ -147,7 +159,7 @@ impl<'a> FieldMap<'a> {
     }
 
     /// The colours of all pixels, between the centres of cells by straight lines.
-    fn picture(&self, look: &Look, map: Rectangle) -> Picture {
+    fn picture(&self, look: &Look, map: Rectangle, largest: f64) -> Picture {
         let size = (resolution(map.width), resolution(map.height));
         let [x, y] = &self.places;
         let across: Vec<(usize, f64)> = middles(self.ranges[0], size.0)
@@ -163,18 +175,18 @@ impl<'a> FieldMap<'a> {
             let ((i, s), (j, t)) = (across[column], up[row]);
             let low = (1.0 - s) * value(i, j) + s * value(i + 1, j);
             let high = (1.0 - s) * value(i, j + 1) + s * value(i + 1, j + 1);
-            Some(((1.0 - t) * low + t * high) / self.largest)
+            Some(((1.0 - t) * low + t * high) / largest)
         })
     }
 
-    fn draw_contours(&self, look: &Look, panel: &Panel) {
+    fn draw_contours(&self, (look, panel): (&Look, &Panel), largest: f64) {
         let [x, y] = &self.places;
         let values = &self.field.values;
         let grid = GridValues { x, y, values };
         for share in LEVELS {
             let width = if share == HALF { 1.6 } else { 0.8 };
             let stroke = Stroke::solid(on_heat(look, share), width);
-            for line in grid.contour(share * self.largest) {
+            for line in grid.contour(share * largest) {
                 panel.draw(&line, Shape::Line(stroke));
             }
         }
@@ -213,63 +225,85 @@ fn draw_borders(
     Some(())
 }
 
-fn draw_map(
+/// Maps of a field at several points, in as many columns as there is room for, with colours that all share.
+fn draw_maps(
     result: &SweepResult,
-    point: &Point,
+    points: &[&Point],
     asked: &FieldQuestion,
     print: &Print<'_>,
 ) -> Drawn {
     let family = &result.subject.family;
-    let drawn = FieldMap::new(of_point(point, asked)?)?;
+    let known = points
+        .iter()
+        .filter_map(|point| Some((point.value, FieldMap::new(of_point(point, asked)?)?)));
+    let known: Vec<(f64, FieldMap<'_>)> = known.collect();
+    let maps = &known[print.share(known.len())];
+    let largest = known
+        .iter()
+        .fold(0.0, |most: f64, (_, map)| most.max(map.largest));
+    let [x, y] = maps.first()?.1.ranges;
     // Times and probabilities are read from zero on, whatever densities have.
     let look = &Look {
         is_logarithmic: false,
         ..print.look
     };
-    let [x, y] = drawn.ranges;
-    let high = look.height(SIDE, SIDE);
-    let up = Scale::vertical(look, y, high, &names::axis(family, 1));
-    let bar = ColourBar::new(look, drawn.largest, high, title(asked));
-    let left = MARGIN + up.left();
-    let wide = look.fill(SIDE, left + bar.width() + MARGIN);
-    let across = Scale::horizontal(look, x, wide, &names::axis(family, 0));
-    let width = left + wide + bar.width() + MARGIN;
+    let vertical = |high: f64| Scale::vertical(look, y, high, &names::axis(family, 1));
+    let horizontal = |wide: f64| Scale::horizontal(look, x, wide, &names::axis(family, 0));
+    let left = MARGIN + vertical(SIDE).left();
+    let beside = left + ColourBar::new(look, largest, SIDE, title(asked)).width() + MARGIN;
+    let own = if maps.len() == 1 { SIDE } else { SMALL };
+    let wide = |columns: usize| {
+        let gaps = (columns - 1) as f64 * BETWEEN;
+        look.fill(own * columns as f64, beside + gaps) / columns as f64
+    };
+    let columns = Look::columns(maps.len().min(MOST_COLUMNS), |columns| {
+        wide(columns) >= NARROWEST
+    });
+    let columns = Look::even_columns(maps.len(), columns);
+    let side = (wide(columns), look.tall * wide(columns).min(TALLEST));
+    let step = (side.0 + BETWEEN, side.1 + BETWEEN + 1.4 * TEXT);
+    let rows = maps.len().div_ceil(columns);
+    let whole = (
+        (columns - 1) as f64 * step.0 + side.0,
+        (rows - 1) as f64 * step.1 + side.1,
+    );
+    let (up, across) = (vertical(side.1), horizontal(side.0));
+    let bar = ColourBar::new(look, largest, whole.1, title(asked));
+    let width = left + whole.0 + bar.width() + MARGIN;
     let heading = Heading::new(look, print.title, width);
     let entries = vec![(
         Swatch::Curve(border(INK)),
         "border of the target".to_owned(),
     )];
     let legend = Legend::new(look, entries, width - 2.0 * MARGIN);
-    let map = Rectangle::new((left, heading.height() + ColourBar::above()), (wide, high));
-    let below = map.bottom() + Scale::below();
+    let all = Rectangle::new((left, heading.height() + ColourBar::above()), whole);
+    let below = all.bottom() + Scale::below();
     let page = Page::new(look, width, below + legend.height() + MARGIN);
     heading.draw(&page);
-    write_above(&page, map, names::at(family, point.value));
-    let panel = page.panel(map, x, y);
-    panel.draw(
-        &[(x.0, y.0), (x.1, y.1)],
-        Shape::Image(drawn.picture(look, map)),
-    );
-    drawn.draw_contours(look, &panel);
-    draw_borders(result, (asked, point.value), (look, &panel), drawn.ranges);
-    frame::border(&page, map);
-    across.draw_below(&page, map, true);
-    up.draw_left(&page, map, true);
-    bar.draw(&page, map, &LEVELS);
-    legend.draw(&page, left + 0.5 * wide, below);
-    let errors = drawn.field.errors.iter().filter(|error| error.is_finite());
+    let first = Rectangle::new((all.left, all.top), side);
+    for (number, (value, map)) in maps.iter().enumerate() {
+        let place = first.tile(number, columns, step);
+        write_above(&page, place, names::at(family, *value));
+        let panel = page.panel(place, x, y);
+        let picture = map.picture(look, place, largest);
+        panel.draw(&[(x.0, y.0), (x.1, y.1)], Shape::Image(picture));
+        map.draw_contours((look, &panel), largest);
+        draw_borders(result, (asked, *value), (look, &panel), map.ranges);
+        frame::border(&page, place);
+        across.draw_below(&page, place, number + columns >= maps.len());
+        up.draw_left(&page, place, number % columns == 0);
+    }
+    bar.draw(&page, all, &LEVELS);
+    legend.draw(&page, left + 0.5 * whole.0, below);
+    let errors = maps.iter().flat_map(|(_, map)| &map.field.errors);
     let seen = format!(
-        "{}{}, with contours at 10, 30, 50 (wide), 70 and 90 % of its largest value; errors are {} at most.",
+        "{}{}, with contours at 10, 30, 50 (wide), 70 and 90 % of the largest value; errors are {} at most.",
         words(asked),
-        caption::at(family, [point.value].into_iter()),
+        caption::at(family, maps.iter().map(|(value, _)| *value)),
         caption::number(errors.fold(0.0, |most: f64, error| most.max(*error))),
     );
     let caption = caption::of_sweep(result, seen, &[]);
-    Some(Figure::new(
-        &page,
-        caption,
-        rows(result, point.value, &drawn),
-    ))
+    Some(Figure::new(&page, caption, table_of(result, maps)).of_panels(known.len()))
 }
 
 /// The cell below a place among centres, and how far the place is on the way to the next.
@@ -280,27 +314,19 @@ fn beside(centres: &[f64], place: f64) -> (usize, f64) {
     (below, ((place - a) / (b - a)).clamp(0.0, 1.0))
 }
 
-fn rows(result: &SweepResult, value: f64, drawn: &FieldMap<'_>) -> String {
+fn table_of(result: &SweepResult, maps: &[(f64, FieldMap<'_>)]) -> String {
     let family = &result.subject.family;
-    let [x, y] = &drawn.places;
-    let numbers = drawn
-        .field
-        .values
-        .iter()
-        .zip(&drawn.field.errors)
-        .enumerate();
-    let rows = numbers.map(|(cell, (field, error))| {
-        let (i, j) = (cell / y.len(), cell % y.len());
-        [value, x[i], y[j], *field, *error]
-            .map(table::number)
-            .to_vec()
+    let rows = maps.iter().flat_map(|(value, map)| {
+        let [x, y] = &map.places;
+        let numbers = map.field.values.iter().zip(&map.field.errors).enumerate();
+        numbers.map(|(cell, (field, error))| {
+            let (i, j) = (cell / y.len(), cell % y.len());
+            [*value, x[i], y[j], *field, *error]
+                .map(table::number)
+                .to_vec()
+        })
     });
-    let columns = [
-        family.parameter(),
-        family.axis(0),
-        family.axis(1),
-        "value",
-        "error",
-    ];
+    let axes = (family.axis(0), family.axis(1));
+    let columns = [family.parameter(), axes.0, axes.1, "value", "error"];
     table::table(&columns, rows)
 }
