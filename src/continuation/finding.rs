@@ -247,6 +247,8 @@ pub enum PassageFault {
     RunsAway,
     /// The slowest mode is no exchange between the two regions.
     NoSwitching,
+    /// A region is the basin of a peak that the density does not have.
+    NoPeak,
 }
 
 /// A class of cells with a steady state of its own, beside others.

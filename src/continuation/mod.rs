@@ -64,6 +64,7 @@ mod segment;
 mod shard;
 mod source;
 mod span;
+mod state_field;
 mod sweep;
 mod wanted;
 
@@ -86,6 +87,7 @@ pub use shard::Shard;
 pub use source::{
     CellCheck, DensitySource, Sensitivity, Session, Solution, SourceError, Subject, Want,
 };
+pub use state_field::StateField;
 pub(crate) use sweep::sweep_shard;
 pub use sweep::{evenly_spaced, sweep};
 

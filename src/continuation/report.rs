@@ -1,7 +1,7 @@
 //! What a solve says of itself: how it ended, numbers, findings.
 
 use super::measure::{EDGE_MASS, Measure, MeasureKind};
-use super::{Finding, Fluctuations};
+use super::{Finding, Fluctuations, StateField};
 
 /// How a point ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -59,6 +59,8 @@ pub struct SolveReport {
     pub measures: Vec<Measure>,
     /// Spectra and correlations that the family asks for.
     pub fluctuations: Vec<Fluctuations>,
+    /// Fields of passages that the family asks for.
+    pub fields: Vec<StateField>,
     /// What the user must know of this point.
     pub findings: Vec<Finding>,
 }
@@ -74,6 +76,7 @@ impl SolveReport {
             solver_error: 0.0,
             measures: Vec::new(),
             fluctuations: Vec::new(),
+            fields: Vec::new(),
             findings: Vec::new(),
         }
     }

@@ -106,6 +106,25 @@ pub enum MethodError {
         /// Name of the axis.
         axis: String,
     },
+    /// Fields of passages over more than two axes, or over one that is no axis of cells.
+    #[error(
+        "fields of passages are worked out over one or two axes of cells, and this system has {axes} axes{}; leave `fields` out of `[passage]`",
+        if *.has_series { ", one of them a series" } else { "" }
+    )]
+    FieldAxes {
+        /// Number of axes.
+        axes: usize,
+        /// Whether one carries a series.
+        has_series: bool,
+    },
+    /// Monte Carlo, of a passage with the basin of a peak.
+    #[error(
+        "passage `{passage}` has the basin of a peak, which is found by the generator alone: give an inequality in its place"
+    )]
+    Basin {
+        /// Name of the passage.
+        passage: String,
+    },
     /// A forcing whose phase does not move, or runs backwards.
     #[error(
         "the frequency of the forcing is {frequency} periods per unit of time at {parameter} = {value}; it must be positive"
@@ -180,6 +199,12 @@ fn has_densities(problem: &Problem) -> Result<(), MethodError> {
         || family.questions.spectrum.is_some();
     if let (true, Err(MethodError::Turn { axis })) = (asks, has_no_turns(problem)) {
         return Err(MethodError::TurnOfQuestion { axis });
+    }
+    let space = problem.space();
+    let has_series = space.axes().iter().any(crate::space::Axis::is_modes);
+    if family.fields().next().is_some() && (space.dimension() > 2 || has_series) {
+        let axes = space.dimension();
+        return Err(MethodError::FieldAxes { axes, has_series });
     }
     let (from, to) = family.ends();
     for value in [from, 0.5 * (from + to), to] {

@@ -49,13 +49,17 @@
 //! | its density, from one grid to another | `lasting.rs` |
 //! | probabilities at times, and quantiles | `survival.rs` |
 //! | numbers with errors | `timed.rs` |
+//! | numbers as fields over the start | `field.rs` |
+//! | the same beside a border | `rim.rs` |
 
 mod cells;
 mod density_start;
 mod exits;
+mod field;
 mod lasting;
 mod nodes;
 mod rate;
+mod rim;
 mod solve;
 mod spread;
 mod start;
@@ -64,6 +68,7 @@ mod tensor;
 mod timed;
 
 pub use density_start::KnownDensity;
+pub use field::{FieldTarget, PassageField, field};
 pub use timed::{Timed, WithError, timed};
 
 use crate::generator::{GeneratorError, levels};

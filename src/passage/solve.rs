@@ -353,7 +353,7 @@ fn sum(values: &[f64]) -> f64 {
 
 /// The system between walls at the ends of the cells that are no borders of the target: what would leave the range
 /// there comes back sooner or later, and waits on.
-fn enclosed(system: &Arc<dyn System>, cells: &PassageCells) -> Enclosed {
+pub(super) fn enclosed(system: &Arc<dyn System>, cells: &PassageCells) -> Enclosed {
     let ends = cells.space.axes().iter().zip(&cells.borders);
     let ranges: Vec<(f64, f64)> = ends
         .map(|(axis, &[lower, upper])| {

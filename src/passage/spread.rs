@@ -302,7 +302,7 @@ const WHOLE: [(f64, f64); 2] = [(0.0, 0.5), (0.5, 1.0)];
 
 /// Where a level changes its sign between two places, by secants of which an end that stays counts half (Illinois), and
 /// by halving after every step that narrows by less than that, as where the level jumps.
-fn crossing(level: &impl Fn(f64) -> f64, [mut a, mut b]: [(f64, f64); 2]) -> f64 {
+pub(super) fn crossing(level: &impl Fn(f64) -> f64, [mut a, mut b]: [(f64, f64); 2]) -> f64 {
     let (mut stayed, mut is_slow) = (0_i32, false);
     for _ in 0..NARROWING {
         let width = (b.0 - a.0).abs();

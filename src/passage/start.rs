@@ -78,33 +78,63 @@ pub(super) fn add_state(
 /// A field that is known at the kept nodes of one space, at the nodes of another; `None` inside the target.
 pub(super) fn at_nodes_of(
     other: &CellSpace,
-    (space, kept): (&CellSpace, &[bool]),
+    cells: (&CellSpace, &[bool]),
     until: &BoundQuantity,
     field: &[f64],
 ) -> Vec<Option<f64>> {
-    let axes: Vec<Vec<AxisWeights>> = (space.axes().iter().zip(other.axes()))
-        .map(|(own, other)| {
-            let nodes = other.nodes().iter();
-            nodes.map(|&x| about(own, x, NODES)).collect()
-        })
+    let places: Vec<Vec<f64>> = other
+        .axes()
+        .iter()
+        .map(|axis| axis.nodes().to_vec())
+        .collect();
+    let near = |state: &[f64]| at_state(cells, state, NODES, field);
+    at_states_of(&places, cells, until, field, near)
+}
+
+/// A field that is known at the kept nodes of a space, at a state, by polynomials through so many nodes an axis.
+pub(super) fn at_state(
+    (space, kept): (&CellSpace, &[bool]),
+    state: &[f64],
+    nodes: usize,
+    field: &[f64],
+) -> Option<f64> {
+    let mut value = 0.0;
+    around(space, kept, state, nodes, |cell, weight| {
+        value += weight * field[cell];
+    })
+    .then_some(value)
+}
+
+/// A field that is known at the kept nodes of a space, at all states with some coordinates along each axis, those of
+/// the last axis fastest; `None` inside the target. What it is at a state near the target, `near` says.
+pub(super) fn at_states_of(
+    places: &[Vec<f64>],
+    (space, kept): (&CellSpace, &[bool]),
+    until: &BoundQuantity,
+    field: &[f64],
+    near: impl Fn(&[f64]) -> Option<f64>,
+) -> Vec<Option<f64>> {
+    let axes: Vec<Vec<AxisWeights>> = (space.axes().iter().zip(places))
+        .map(|(own, places)| places.iter().map(|&x| about(own, x, NODES)).collect())
         .collect();
     let values = gathered(field, &space.shape(), &axes);
     let is_whole = whole(kept, &space.shape(), &axes);
-    let one = |cell: usize| {
-        let state = other.node(cell);
-        if until.at(&state) < 0.0 || space.find(&state).is_none() {
+    let one = |number: usize| {
+        let (mut rest, mut state) = (number, [0.0; MAX_DIMENSION]);
+        for (x, places) in state.iter_mut().zip(places).rev() {
+            *x = places[rest % places.len()];
+            rest /= places.len();
+        }
+        let state = &state[..places.len()];
+        if until.at(state) < 0.0 || space.find(state).is_none() {
             return None;
         }
-        if is_whole[cell] {
-            return Some(values[cell]);
+        if is_whole[number] {
+            return Some(values[number]);
         }
-        let mut value = 0.0;
-        around(space, kept, &state, NODES, |cell, weight| {
-            value += weight * field[cell];
-        })
-        .then_some(value)
+        near(state)
     };
-    (0..other.n_cells()).map(one).collect()
+    (0..values.len()).map(one).collect()
 }
 
 /// The coordinate of a place.

@@ -13,14 +13,14 @@ use crate::system::System;
 /// Grids by which errors are made: cells an axis over those of the sweep, and how often what they differ by is taken.
 /// At a convergence order of three the true error is 0.73 and 0.28 times those differences, at four 0.46 and 0.15
 /// times. Where a border passes between nodes moves errors about, so that one difference alone may vanish by chance.
-const FEWER: [(f64, f64); 2] = [(0.75, 1.4), (0.6, 0.6)];
+pub(super) const FEWER: [(f64, f64); 2] = [(0.75, 1.4), (0.6, 0.6)];
 
 /// Share of the difference by dissipation that stays as an error once it is extrapolated away.
-const DAMPED: f64 = 0.25;
+pub(super) const DAMPED: f64 = 0.25;
 
 /// Order at which what a border of lower order changes vanishes with finer cells. Where a border is oblique it changes
 /// its sign from cell to cell, so that on one grid alone its sum may be small by chance.
-const BORDER_ORDER: i32 = 3;
+pub(super) const BORDER_ORDER: i32 = 3;
 
 /// A number with its error.
 pub type WithError = (f64, f64);

@@ -11,6 +11,8 @@
 //! | `p_x_truncated` | parameter | share by which the ends of the ranges may have changed all of `p_x` (generator) |
 //! | `p_x_closed` | as `p_x` | by how much closed ends may change `p_x` besides; where enough leaves (generator) |
 //! | `p_x_replicate` | parameter, replicate, axes … | densities without one group of samples each (SGCM) |
+//! | `exit_mean_time`, `exit_committor` | parameter, axes … | field of the passage `exit` over the state where it starts |
+//! | `exit_mean_time_error` | as `exit_mean_time` | its error |
 //! | `p_y_kink_0` | parameter; for a joint density also the other axis | jump of ∂(log p)/∂(axis) across a plane; attributes `axis`, `at`; zero with the attribute `bends` where only higher derivatives jump |
 //!
 //! Kinks are numbered in the order in which they first occur. NaN stands for what is not there at a parameter value. A
@@ -19,6 +21,7 @@
 use serde_json::{Map, Value, json};
 
 use super::columns::Named;
+use crate::continuation::StateField;
 use crate::density::{EstimatedDensity, Kink, Observable};
 use crate::system::Family;
 
@@ -222,6 +225,20 @@ impl Layout {
         Self::new(name, dimensions, long_name)
     }
 
+    /// A field of a passage, and its error.
+    pub(super) fn field(family: &Family, field: &StateField) -> [Self; 2] {
+        let mut dimensions = vec![(family.parameter().to_owned(), 1)];
+        for (number, cells) in field.axes.iter().enumerate() {
+            dimensions.push((family.axis(number).to_owned(), cells.count() as u64));
+        }
+        let words = field_words(&field.name);
+        let error = format!("error of the {words}");
+        [
+            Self::new(field.name.clone(), dimensions.clone(), words),
+            Self::new(field_error(&field.name), dimensions, error),
+        ]
+    }
+
     /// Whether this is the array of that kink, whatever its number.
     pub(super) fn is_kink(&self, other: &Self) -> bool {
         let of = |layout: &Self| {
@@ -280,6 +297,16 @@ pub(super) fn kink_prefix(family: &Family, observable: Observable) -> String {
     density(family, observable) + "_kink_"
 }
 
+/// Name of the error of a field.
+pub(super) fn field_error(field: &str) -> String {
+    format!("{field}_error")
+}
+
+/// What a field is, in words.
+pub(super) fn field_words(field: &str) -> String {
+    format!("field {field} over the state where the passage starts")
+}
+
 /// Every name that the store of densities may have, dimensions included.
 pub(super) fn names(family: &Family, observables: &[Observable]) -> Vec<Named> {
     let mut names = vec![
@@ -287,7 +314,10 @@ pub(super) fn names(family: &Family, observables: &[Observable]) -> Vec<Named> {
         Named::new(REPLICATE, "groups of samples"),
     ];
     let mut known: Vec<&str> = Vec::new();
-    for axis in observables.iter().flat_map(|observable| observable.axes()) {
+    let watched = observables.iter().flat_map(|observable| observable.axes());
+    // Fields are over all axes.
+    let of_fields = family.fields().next().map(|_| 0..family.model().axes.len());
+    for axis in watched.chain(of_fields.into_iter().flatten()) {
         let axis = family.axis(axis);
         if !known.contains(&axis) {
             known.push(axis);
@@ -297,6 +327,14 @@ pub(super) fn names(family: &Family, observables: &[Observable]) -> Vec<Named> {
                 format!("edges of the cells of {axis}"),
             ));
         }
+    }
+    for field in family.fields() {
+        let words = field_words(&field.name);
+        names.push(Named::new(
+            field_error(&field.name),
+            format!("error of the {words}"),
+        ));
+        names.push(Named::new(field.name.as_str(), words));
     }
     for &observable in observables {
         let density_of = words(family, observable);

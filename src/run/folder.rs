@@ -13,7 +13,6 @@ use super::{
     settling::Settling,
 };
 use crate::continuation::{Point, Subject, SweepResult};
-use crate::density::EstimatedDensity;
 
 /// The stored densities.
 const STORE: &str = "densities.zarr";
@@ -166,9 +165,8 @@ pub(super) fn write_densities(run: &Path, result: &SweepResult) -> Result<PathBu
         .points
         .iter()
         .filter(|point| !point.densities.is_empty());
-    let densities = solved.map(|point| (point.value, point.densities.as_slice()));
-    let densities: Vec<(f64, &[EstimatedDensity])> = densities.collect();
-    write_store(&path, &result.subject.family, &densities)?;
+    let stored = solved.map(|point| (point.value, &point.densities[..], &point.report.fields[..]));
+    write_store(&path, &result.subject.family, &stored.collect::<Vec<_>>())?;
     Ok(path)
 }
 

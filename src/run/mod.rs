@@ -95,6 +95,7 @@ mod staged;
 mod staging;
 mod store;
 mod stored_densities;
+mod stored_fields;
 mod stored_run;
 #[cfg(test)]
 mod stored_tests;

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::stored_densities::StoredDensities;
+use super::stored_fields::StoredFields;
 use super::{Journal, RunError};
 use crate::continuation::{Point, Subject};
 use crate::space::{Axis, CellSpace};
@@ -16,6 +17,7 @@ pub(super) struct PointDensities<'a> {
     cells: (&'a CellSpace, &'a [Axis]),
     journal: Option<Journal>,
     store: Option<StoredDensities>,
+    fields: Option<StoredFields>,
     /// What is opened.
     path: PathBuf,
 }
@@ -43,6 +45,10 @@ impl<'a> PointDensities<'a> {
         } else {
             None
         };
+        let fields = match &store {
+            Some(_) => Some(StoredFields::open(&path, &subject.family, cells.0)?),
+            None => None,
+        };
         let path = match &journal {
             Some(journal) => journal.path(),
             None => path,
@@ -52,11 +58,12 @@ impl<'a> PointDensities<'a> {
             cells,
             journal,
             store,
+            fields,
             path,
         })
     }
 
-    /// Gives a point its densities.
+    /// Gives a point its densities, and its fields of passages.
     ///
     /// # Errors
     /// [`RunError::NoDensity`], [`RunError::NotFinite`]; as [`StoredDensities::at`] and [`Journal::densities`].
@@ -76,6 +83,9 @@ impl<'a> PointDensities<'a> {
             parameter: parameter(),
             value,
         })?;
+        if let Some(fields) = &self.fields {
+            point.report.fields = fields.at(value)?;
+        }
         let is_number = |value: &f64| value.is_finite() && value.abs() < LARGEST;
         for one in &point.densities {
             let mut values = one.density.values.iter().chain(&one.standard_error);

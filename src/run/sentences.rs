@@ -291,6 +291,9 @@ fn passage_in_words(family: &Family, passage: usize, fault: PassageFault) -> Str
         PassageFault::RunsAway => {
             "paths run away without entering the region that is waited for, so that it has no mean time"
         }
+        PassageFault::NoPeak => {
+            "a region is the basin of a peak that the density does not have here, or is the only one"
+        }
         PassageFault::NoSwitching => {
             return format!(
                 "passage `{name}` has no rates from the slowest mode: that is no exchange between its two regions, or is not known"

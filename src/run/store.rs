@@ -14,8 +14,13 @@ use super::arrays::Layout;
 use super::tree::rename;
 use super::zarr::{self, Row};
 use crate::UNFINISHED;
+use crate::continuation::StateField;
 use crate::density::{EstimatedDensity, Variants};
+use crate::space::Axis;
 use crate::system::Family;
+
+/// What is stored of a point: the value of the parameter, densities, and fields of passages.
+pub(super) type StoredPoint<'a> = (f64, &'a [EstimatedDensity], &'a [StateField]);
 
 /// Writes the densities at values of the parameter in their order, in the place of a store that is there; nothing where
 /// there are none.
@@ -25,9 +30,9 @@ use crate::system::Family;
 pub(super) fn write_store(
     path: &Path,
     family: &Family,
-    densities: &[(f64, &[EstimatedDensity])],
+    points: &[StoredPoint<'_>],
 ) -> Result<(), RunError> {
-    if densities.is_empty() {
+    if points.is_empty() {
         return Ok(());
     }
     let failed = |source| RunError::Write {
@@ -39,8 +44,9 @@ pub(super) fn write_store(
     let room = room.map_err(failed)?;
     let fresh = room.path().join("fresh");
     let mut store = Store::default();
-    for (index, (value, densities)) in densities.iter().enumerate() {
+    for (index, (value, densities, fields)) in points.iter().enumerate() {
         store.add(family, (index, *value), densities);
+        store.add_fields(family, index, fields);
     }
     store.write(family, &fresh).map_err(failed)?;
     // What stands there is of an unfinished run, whose journal holds the same densities.
@@ -68,15 +74,31 @@ impl<'a> Store<'a> {
         for estimate in densities {
             let axes = estimate.observable.axes();
             for (number, axis) in axes.into_iter().zip(&estimate.density.axes) {
-                let [centres, edges] = Layout::axis(family.axis(number));
-                for (layout, numbers) in [(centres, &axis.centres()[..]), (edges, axis.edges())] {
-                    if !self.has(&layout.name) {
-                        let rows = numbers.iter().map(|&one| vec![vec![one].into()]);
-                        self.arrays.push((layout, rows.collect()));
-                    }
-                }
+                self.add_axis(family.axis(number), axis);
             }
             self.add_estimate(family, index, estimate);
+        }
+    }
+
+    fn add_axis(&mut self, name: &str, axis: &Axis) {
+        let [centres, edges] = Layout::axis(name);
+        for (layout, numbers) in [(centres, &axis.centres()[..]), (edges, axis.edges())] {
+            if !self.has(&layout.name) {
+                let rows = numbers.iter().map(|&one| vec![vec![one].into()]);
+                self.arrays.push((layout, rows.collect()));
+            }
+        }
+    }
+
+    fn add_fields(&mut self, family: &Family, index: usize, fields: &'a [StateField]) {
+        for field in fields {
+            for (number, axis) in field.axes.iter().enumerate() {
+                self.add_axis(family.axis(number), axis);
+            }
+            let both = [&field.values, &field.errors];
+            for (layout, numbers) in Layout::field(family, field).into_iter().zip(both) {
+                self.put(layout, index, vec![Cow::Borrowed(numbers)]);
+            }
         }
     }
 

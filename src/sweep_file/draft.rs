@@ -8,7 +8,7 @@ use crate::figure::FigureSettings;
 use crate::method::{
     DerivedMeasure, GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions,
 };
-use crate::system::{Interpretation, Model, NoiseKind, Sides};
+use crate::system::{FieldKind, Interpretation, Model, NoiseKind, Sides};
 use crate::topology::DetectOptions;
 
 /// The chosen method, and the settings of all, so that a file can hold them all and one word switches.
@@ -246,6 +246,7 @@ pub(super) struct PassageDraft {
     /// Several regions, each of which ends the passage; in place of `until`.
     pub(super) exits: Option<Vec<String>>,
     pub(super) switching: Option<bool>,
+    pub(super) fields: Option<Vec<FieldKind>>,
     /// Axes and coordinates.
     pub(super) start: Vec<(String, f64)>,
     pub(super) times: Option<Vec<f64>>,

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::{
-    AtPhase, Enclosed, FixedPointFault, Linearised, Model, NoiseKind, ParameterValues, Path,
-    Quantity, Questions, System, SystemError, Tangent, TangentFault,
+    AtPhase, Enclosed, FieldQuestion, FixedPointFault, Linearised, Model, NoiseKind,
+    ParameterValues, Path, Quantity, Questions, System, SystemError, Tangent, TangentFault,
 };
 
 /// Systems along a path: one number in, a bound system out, with names and symbols for tables and figures.
@@ -92,6 +92,12 @@ impl Family {
     /// The walls that reflect, by axes: a lower and an upper one, infinite where there is none.
     pub(crate) fn walls(&self) -> &BTreeMap<usize, (f64, f64)> {
         &self.walls
+    }
+
+    /// The fields of all passages that are wanted.
+    pub fn fields(&self) -> impl Iterator<Item = &FieldQuestion> {
+        let passages = self.questions.passages.iter();
+        passages.flat_map(|passage| &passage.fields)
     }
 
     /// The linear equation of small deviations from a state that neither drift nor noise moves, at a coordinate of

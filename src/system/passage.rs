@@ -15,6 +15,8 @@ pub struct PassageQuestion {
     pub start: PassageStart,
     /// Whether the rates between the regions of start and end are wanted, there and back.
     pub switching: bool,
+    /// What is wanted as a field over the state where the process starts.
+    pub fields: Vec<FieldQuestion>,
     /// Times at which the probability is wanted that the process still goes on, ascending.
     pub times: Vec<f64>,
     /// Shares of the processes, between 0 and 1, ascending: the times by which so many have ended are wanted.
@@ -22,6 +24,15 @@ pub struct PassageQuestion {
 }
 
 impl PassageQuestion {
+    /// Whether it starts in the basin of a peak, or ends there.
+    pub fn has_basins(&self) -> bool {
+        let start = match &self.start {
+            PassageStart::Region(region) => region.basin(),
+            PassageStart::State(_) | PassageStart::Density => None,
+        };
+        self.until.basin().or(start).is_some()
+    }
+
     /// What columns call a part of the region that ends the passage: its name, or its number from 1 on where the
     /// question itself gives it.
     pub(crate) fn exit_label(&self, part: usize) -> String {
@@ -37,6 +48,32 @@ impl PassageQuestion {
     pub(crate) fn exit_name(passage: &str, part: usize) -> String {
         format!("{passage}_until_{}", part + 1)
     }
+}
+
+/// What a field of a passage is over the state where the process starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FieldKind {
+    /// The mean time.
+    MeanTime,
+    /// The probability that one region is entered before others.
+    Committor,
+}
+
+words! { FieldKind, pub name: MeanTime: "mean-time", Committor: "committor" }
+
+/// A field of a passage over the state where the process starts.
+#[derive(Debug, Clone)]
+pub struct FieldQuestion {
+    /// Its name, that of its array: `exit_mean_time`, `exit_committor`.
+    pub name: String,
+    /// What it is.
+    pub kind: FieldKind,
+    /// The region at whose border the process ends.
+    pub until: Region,
+    /// Parts of that region.
+    pub exits: Vec<Region>,
+    /// The part whose probability is wanted, of a committor.
+    pub part: Option<usize>,
 }
 
 /// A level of a measure of the sweep: the values of the parameter are wanted at which the measure crosses it.

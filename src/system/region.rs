@@ -3,6 +3,8 @@
 //! A region is kept as its level, a function of the state that is negative inside: of `a < b` it is a - b, of
 //! `one and other` the larger of two levels, of `one or other` the smaller one, of `not one` the level with the other
 //! sign. So the border has a place on every line, to the last digit, and a region is a formula like any other.
+//!
+//! A region may also be found: the basin of a peak of a density, `peak 2 of x`, whose ends are known where the density is.
 
 mod level;
 
@@ -18,9 +20,74 @@ use level::{given_span, written_level};
 pub struct Region {
     text: String,
     level: Arc<Quantity>,
+    basin: Option<Basin>,
+}
+
+/// The basin of a peak of the marginal density of an axis: up to the valleys beside it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Basin {
+    /// The peak, counted from 1 along the axis.
+    pub peak: usize,
+    /// The axis.
+    pub axis: usize,
+}
+
+impl Basin {
+    /// Reads `peak 2 of x`; `None` of another text.
+    fn read(model: &Model, text: &str) -> Option<Result<Self, RegionFault>> {
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let ["peak", number, "of", name] = words[..] else {
+            return None;
+        };
+        let axis = model.axes.iter().position(|axis| axis.name == name);
+        let peak = number.parse().ok().filter(|&peak: &usize| peak > 0);
+        Some(match peak.zip(axis) {
+            Some((peak, axis)) => Ok(Self { peak, axis }),
+            None => Err(RegionFault::Basin {
+                axes: model.axes.iter().map(|axis| axis.name.clone()).collect(),
+            }),
+        })
+    }
 }
 
 impl Region {
+    /// The basin that it is, which has no level of its own: see [`Region::between`].
+    pub fn basin(&self) -> Option<Basin> {
+        self.basin
+    }
+
+    /// The states between two coordinates of an axis, either of which may be missing; of the same name.
+    ///
+    /// # Errors
+    /// [`RegionFault`] for an axis that the model does not have, or without an end.
+    pub fn between(
+        &self,
+        model: &Model,
+        axis: usize,
+        ends: [Option<f64>; 2],
+    ) -> Result<Self, RegionFault> {
+        let name = model.axes.get(axis).map_or("", |axis| axis.name.as_str());
+        let [lower, upper] = ends;
+        let parts = [
+            lower.map(|end| format!("{name} > {end:?}")),
+            upper.map(|end| format!("{name} < {end:?}")),
+        ];
+        let text = parts
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>()
+            .join(" and ");
+        let read = regions(model, &[(self.name(), &text)]);
+        let wrong = |errors: Vec<RegionError>| {
+            errors
+                .into_iter()
+                .next()
+                .map_or(RegionFault::Missing, |error| error.fault)
+        };
+        let mut read = read.map_err(wrong)?;
+        read.pop().ok_or(RegionFault::Missing)
+    }
+
     /// Its name.
     pub fn name(&self) -> &str {
         self.level.name()
@@ -66,6 +133,12 @@ pub enum RegionFault {
     /// More closing than opening parentheses, or fewer.
     #[error("the parentheses do not match")]
     Parentheses,
+    /// A basin of no peak, or along no axis.
+    #[error("a basin is `peak N of AXIS`, with peaks counted from 1 along an axis: {}", axes.join(", "))]
+    Basin {
+        /// The axes that there are.
+        axes: Vec<String>,
+    },
     /// A formula that is wrong.
     #[error("{0}")]
     Formula(QuantityFault),
@@ -85,6 +158,10 @@ impl RegionFault {
         match self {
             Self::Formula(fault) => fault.remedy(),
             Self::Equality => Some("write `abs(a - b) < c`".to_owned()),
+            Self::Basin { axes } => Some(format!(
+                "write `peak 1 of {}`",
+                axes.first().map_or("x", String::as_str)
+            )),
             _ => Some(
                 "write inequalities such as `x < -0.2` or `x^2 + y^2 > 4`, joined by `and`, `or` and `not`"
                     .to_owned(),
@@ -110,9 +187,31 @@ impl RegionFault {
 /// # Ok::<(), pbif::system::SystemError>(())
 /// ```
 pub fn regions(model: &Model, given: &[(&str, &str)]) -> Result<Vec<Region>, Vec<RegionError>> {
-    let names: Vec<&str> = given.iter().map(|(name, _)| *name).collect();
+    let basins: Vec<_> = given
+        .iter()
+        .map(|(_, text)| Basin::read(model, text))
+        .collect();
+    // What is found has no formula that could stand in another.
+    let typed = given
+        .iter()
+        .zip(&basins)
+        .filter(|(_, basin)| basin.is_none());
+    let names: Vec<&str> = typed.map(|((name, _), _)| *name).collect();
     let (mut levels, mut errors) = (Vec::new(), Vec::new());
     for (index, (_, text)) in given.iter().enumerate() {
+        match &basins[index] {
+            None => {}
+            Some(Ok(basin)) => {
+                let axis = model.axes[basin.axis].name.clone();
+                levels.push((axis, Vec::new()));
+                continue;
+            }
+            Some(Err(fault)) => {
+                let (span, fault) = (Some(0..text.len()), fault.clone());
+                errors.push(RegionError { index, span, fault });
+                continue;
+            }
+        }
         match written_level(&names, text) {
             Ok(level) => levels.push(level),
             Err((span, fault)) => errors.push(RegionError {
@@ -125,31 +224,46 @@ pub fn regions(model: &Model, given: &[(&str, &str)]) -> Result<Vec<Region>, Vec
     if !errors.is_empty() {
         return Err(errors);
     }
-    let formulas = names.iter().zip(&levels);
-    let formulas: Vec<(&str, Option<&str>)> = formulas
-        .map(|(&name, (level, _))| (name, Some(level.as_str())))
-        .collect();
-    match quantities(model, &formulas) {
-        Ok(read) => {
-            let pairs = read.into_iter().zip(given);
-            let region = |(level, (_, text)): (Arc<Quantity>, &(&str, &str))| Region {
-                text: (*text).to_owned(),
-                level,
-            };
-            Ok(pairs.map(region).collect())
+    // Those with formulas may stand in each other.
+    let (typed, found): (Vec<usize>, Vec<usize>) =
+        (0..given.len()).partition(|&index| basins[index].is_none());
+    let groups = [typed]
+        .into_iter()
+        .chain(found.into_iter().map(|one| vec![one]));
+    let mut all = vec![None; given.len()];
+    for group in groups.filter(|group| !group.is_empty()) {
+        let formulas: Vec<(&str, Option<&str>)> = (group.iter())
+            .map(|&index| (given[index].0, Some(levels[index].0.as_str())))
+            .collect();
+        match quantities(model, &formulas) {
+            Ok(read) => {
+                let pairs = group.into_iter().zip(read);
+                pairs.for_each(|(index, level)| all[index] = Some(level));
+            }
+            Err(wrong) => errors.extend(wrong.into_iter().map(|error| {
+                let index = group[error.index];
+                let span = error.fault.span();
+                RegionError {
+                    index,
+                    span: span.and_then(|span| given_span(&levels[index].1, &span)),
+                    fault: RegionFault::Formula(error.fault),
+                }
+            })),
         }
-        Err(wrong) => Err(wrong
-            .into_iter()
-            .map(|error| RegionError {
-                index: error.index,
-                span: error
-                    .fault
-                    .span()
-                    .and_then(|span| given_span(&levels[error.index].1, &span)),
-                fault: RegionFault::Formula(error.fault),
-            })
-            .collect()),
     }
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    let read = all.into_iter().zip(given).zip(basins);
+    let region =
+        |((level, (_, text)), basin): ((Option<Arc<Quantity>>, &(&str, &str)), Option<_>)| {
+            Some(Region {
+                text: (*text).to_owned(),
+                level: level?,
+                basin: basin.and_then(Result::ok),
+            })
+        };
+    Ok(read.filter_map(region).collect())
 }
 
 #[cfg(test)]
@@ -183,6 +297,38 @@ mod tests {
             level(&[("left", "x<0"), ("one", "left and y>0")], [-2.0, 1.0]),
             -1.0
         );
+    }
+
+    #[test]
+    fn basins_of_peaks_are_read_and_stand_in_no_formula() {
+        let model = registry::find("coulomb").unwrap();
+        let read = regions(&model, &[("left", "peak  1 of x"), ("far", "y > 2")]).unwrap();
+        assert_eq!(read[0].basin(), Some(Basin { peak: 1, axis: 0 }));
+        assert_eq!(
+            (read[0].name(), read[0].text(), read[1].basin()),
+            ("left", "peak  1 of x", None)
+        );
+        let between = read[0].between(&model, 0, [None, Some(-0.25)]).unwrap();
+        assert_eq!(
+            (between.name(), between.text(), between.basin()),
+            ("left", "x < -0.25", None)
+        );
+        let both = read[0]
+            .between(&model, 1, [Some(-1e-20), Some(2.0)])
+            .unwrap();
+        assert_eq!(both.text(), "y > -1e-20 and y < 2.0");
+        assert!(read[0].between(&model, 0, [None, None]).is_err());
+        for (text, word) in [
+            ("peak 0 of x", "counted from 1"),
+            ("peak 1 of q", "along an axis: x, y"),
+        ] {
+            let error = regions(&model, &[("one", text)]).unwrap_err().remove(0);
+            assert!(error.fault.to_string().contains(word), "{}", error.fault);
+        }
+        for text in ["left and y > 0", "left < 1"] {
+            let given = [("left", "peak 1 of x"), ("one", text)];
+            assert_eq!(regions(&model, &given).unwrap_err()[0].index, 1);
+        }
     }
 
     #[test]

@@ -163,6 +163,243 @@ fn wrong_questions_are_refused_with_their_place_and_a_remedy() {
     }
 }
 
+/// Maier and Stein's system between two discs.
+const FIELDS: &str = r#"title = "fields"
+[system.equations]
+u = "u - u^3 - b u v^2"
+v = "-(1 + u^2) v"
+[system.noise]
+u = "0.5"
+v = "0.5"
+[system.parameters]
+b = 1.0
+[sweep]
+parameter = "b"
+from = 1.0
+to = 4.0
+points = 2
+[cells]
+u = { from = -1.8, to = 1.8, count = 40 }
+v = { from = -1.2, to = 1.2, count = 30 }
+[regions]
+left = "(u + 1)^2 + v^2 < 0.16"
+right = "(u - 1)^2 + v^2 < 0.16"
+[passage]
+cross = { from = "left", to = "right", fields = ["mean-time", "committor"] }
+[detect]
+joint = []
+[figures]
+formats = ["svg"]
+draw = ["field"]
+"#;
+
+#[test]
+fn fields_are_stored_drawn_read_back_and_exported() {
+    let room = Room::new();
+    room.write("a.toml", FIELDS);
+    room.done("sweep a.toml --out run");
+    let arrays =
+        "densities.zarr/cross_mean_time/zarr.json densities.zarr/cross_committor_error/zarr.json";
+    room.holds_all("run", arrays);
+    let drawn = "figures/field_cross_mean_time_1.svg figures/field_cross_committor_4.svg";
+    room.holds_all("run", drawn);
+    let before = room.bytes("run/figures/field_cross_committor_4.svg");
+    // The same from what is stored.
+    room.done("plot run --format svg");
+    assert_eq!(
+        room.bytes("run/figures/field_cross_committor_4.svg"),
+        before
+    );
+    room.done("plot run --format csv --only field_cross_committor");
+    let table = room.table("run/figures/field_cross_committor_1.csv");
+    let mut middle = 0;
+    for row in &table.0 {
+        let [u, v, value, error] = row.numbers(["u", "v", "value", "error"]);
+        assert!((0.0..=1.0).contains(&value) && error >= 0.0);
+        let at = |sign: f64| (u - sign).hypot(v) < 0.4;
+        if at(1.0) || at(-1.0) {
+            assert_eq!((value, error), (f64::from(u8::from(at(1.0))), 0.0));
+        }
+        // The system is symmetric: the value at -u is what is missing to one.
+        let mirrored = table.0.iter().find(|other| {
+            let [x, y] = other.numbers(["u", "v"]);
+            (x + u).abs() < 1e-9 && (y - v).abs() < 1e-9
+        });
+        let [other, of_other] = mirrored.unwrap().numbers(["value", "error"]);
+        assert!(
+            (value + other - 1.0).abs() <= error + of_other + 1e-9,
+            "{value} {other}"
+        );
+        middle += usize::from(u.abs() < 0.05);
+    }
+    assert!(middle > 0);
+    room.done("export run");
+    assert!(String::from_utf8_lossy(&room.bytes("run.nc")).contains("cross_mean_time_error"));
+    // A complete file asks the same.
+    let complete = room.done("show run --sweep").out;
+    assert_says(&complete, &["fields = [\"mean-time\", \"committor\"]"]);
+    room.write("b.toml", complete);
+    room.done("check b.toml");
+}
+
+#[test]
+fn fields_that_cannot_be_worked_out_are_refused() {
+    let room = Room::new();
+    for (old, new, words) in [
+        (
+            "from = \"left\", to = \"right\"",
+            "from = \"density\", to = \"right\"",
+            ["asks for a committor", "as `from` and `to`"],
+        ),
+        (
+            "\"mean-time\", \"committor\"",
+            "\"mean-times\"",
+            ["mean-times", "mean-time"],
+        ),
+        (
+            "[figures]",
+            "[method]\nkind = \"monte-carlo\"\n[figures]",
+            ["by `generator`, not by `monte-carlo`", "`fields`"],
+        ),
+        (
+            "v = \"-(1 + u^2) v\"",
+            "v = \"-(1 + u^2) v\"\nw = \"-w + v\"",
+            [
+                "over one or two axes of cells, and this system has 3",
+                "`fields`",
+            ],
+        ),
+        (
+            "u = \"u - u^3 - b u v^2\"",
+            "cross_mean_time = \"-cross_mean_time\"\nu = \"u - u^3 - b u v^2\"",
+            ["cross_mean_time", "name"],
+        ),
+    ] {
+        assert_eq!(FIELDS.matches(old).count(), 1, "{old}");
+        let text = FIELDS.replace(old, new);
+        let axis =
+            |name: &str| format!("[cells]\n{name} = {{ from = -2.0, to = 2.0, count = 12 }}");
+        let text = match new {
+            new if new.contains("w =") => text.replace("[cells]", &axis("w")),
+            new if new.contains("-cross_mean_time") => {
+                text.replace("[cells]", &axis("cross_mean_time"))
+            }
+            _ => text,
+        };
+        room.write("a.toml", text);
+        room.refused("sweep a.toml", &words);
+    }
+}
+
+/// A potential with wells at -1 and 1 and its top at r, beside an axis of its own.
+const BASINS: &str = r#"title = "basins"
+[system.equations]
+x = "-(x - 1)*(x + 1)*(x - r)"
+y = "-y"
+[system.noise]
+x = "s"
+y = "0.7"
+[system.parameters]
+r = 0.0
+s = 0.7
+[sweep]
+parameter = "r"
+from = -0.2
+to = 0.2
+points = 3
+[cells]
+x = { from = -2.4, to = 2.4, count = 80 }
+y = { from = -3.0, to = 3.0, count = 36 }
+[regions]
+right = "peak 2 of x"
+[passage]
+found = { from = "peak 1 of x", to = "right" }
+typed = { from = "x < r", to = "x > r" }
+down = { start = { x = 0.9, y = 0 }, until = "peak 1 of x" }
+back = { start = { x = 0.9, y = 0 }, until = "x < r" }
+[detect]
+marginals = ["x"]
+joint = []
+[figures]
+draw = []
+"#;
+
+#[test]
+fn basins_of_peaks_end_at_the_valley_at_every_value() {
+    let room = Room::new();
+    room.write("a.toml", BASINS);
+    room.done("sweep a.toml --out run");
+    for row in &room.table("run/points.csv").0 {
+        assert!(!row["findings"].contains("passage"), "{}", &row["findings"]);
+        for (found, typed) in [("found", "typed"), ("down", "back")] {
+            let numbers = |name: &str| {
+                let names = [format!("{name}_mean"), format!("{name}_mean_error")];
+                names.map(|name| row.number(&name))
+            };
+            let ([value, error], [exact, of_exact]) = (numbers(found), numbers(typed));
+            assert!(
+                (value - exact).abs() <= error + of_exact,
+                "{value} ± {error}, {exact} ± {of_exact}"
+            );
+            assert!(error < 0.05 * value, "{value} ± {error}");
+        }
+    }
+    room.write("b.toml", room.done("show run --sweep").out);
+    assert_says(
+        &room.read("b.toml"),
+        &["from = \"peak 1 of x\"", "until = \"right\""],
+    );
+    room.done("check b.toml");
+    // A third peak is not there.
+    room.write("three.toml", BASINS.replace("peak 1 of x", "peak 3 of x"));
+    room.done("sweep three.toml --out three");
+    for row in &room.table("three/points.csv").0 {
+        assert!(
+            row["findings"].contains("passage-no-peak"),
+            "{}",
+            &row["findings"]
+        );
+        assert_eq!(&row["found_mean"], "");
+        assert!(row.number("back_mean") > 0.0);
+    }
+    for (old, new, words) in [
+        (
+            "peak 2 of x",
+            "peak 2 of z",
+            ["a basin is `peak N of AXIS`", "write `peak 1 of x`"],
+        ),
+        (
+            "marginals = [\"x\"]",
+            "marginals = [\"y\"]",
+            ["whose density is not watched", "detect.marginals"],
+        ),
+        (
+            "from = \"peak 1 of x\", to = \"right\"",
+            "from = \"peak 1 of x\", to = \"right\", fields = [\"committor\"]",
+            ["committor between basins", "give inequalities"],
+        ),
+        (
+            "until = \"peak 1 of x\"",
+            "until = [\"peak 1 of x\", \"x > 2\"]",
+            ["among several regions", "the basin alone"],
+        ),
+        (
+            "to = \"right\"",
+            "to = \"right\", switching = \"on\"",
+            ["rates between states", "leave `fields` and `switching` out"],
+        ),
+        (
+            "[figures]",
+            "[method]\nkind = \"monte-carlo\"\n[figures]",
+            ["found by `generator` alone", "give an inequality"],
+        ),
+    ] {
+        assert_eq!(BASINS.matches(old).count(), 1, "{old}");
+        room.write("c.toml", BASINS.replace(old, new));
+        room.refused("sweep c.toml", &words);
+    }
+}
+
 /// The numbers of passages of a row, each with its error.
 fn numbers(row: &crate::common::table::Row) -> Vec<(f64, f64)> {
     let names = [

@@ -121,7 +121,7 @@ stored! {
 
 impl PassageFault {
     /// All of them, with their codes.
-    pub(super) const CODES: [(Self, &'static str); 9] = [
+    pub(super) const CODES: [(Self, &'static str); 10] = [
         (Self::Nowhere, "passage-nowhere"),
         (Self::Everywhere, "passage-everywhere"),
         (Self::Start, "passage-start"),
@@ -131,6 +131,7 @@ impl PassageFault {
         (Self::Rare, "passage-rare"),
         (Self::RunsAway, "passage-runs-away"),
         (Self::NoSwitching, "passage-no-switching"),
+        (Self::NoPeak, "passage-no-peak"),
     ];
 
     fn code(self) -> &'static str {

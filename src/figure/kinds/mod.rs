@@ -5,6 +5,7 @@ mod compared_joint;
 mod compared_marginals;
 pub(super) mod curve;
 mod diagram;
+mod field;
 pub(super) mod friction;
 mod health;
 mod homology;
@@ -29,7 +30,7 @@ use crate::density::Observable;
 use crate::system::Family;
 
 /// The kinds of figures of a sweep, in the order in which they are drawn: a new kind is one line here.
-pub(super) const OF_SWEEPS: [Kind; 13] = [
+pub(super) const OF_SWEEPS: [Kind; 14] = [
     diagram::KIND,
     marginals::KIND,
     joint::KIND,
@@ -41,6 +42,7 @@ pub(super) const OF_SWEEPS: [Kind; 13] = [
     homology::KIND,
     health::KIND,
     measures::KIND,
+    field::KIND,
     spectrum::KIND,
     spectrogram::KIND,
 ];

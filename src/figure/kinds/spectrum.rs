@@ -150,11 +150,11 @@ fn draw_spectrum(
         },
     );
     let chart = Chart {
-        abscissa: FREQUENCY,
+        abscissa: FREQUENCY.to_owned(),
         is_logarithmic,
         ordinate: power_title(asked),
         is_over_decades: true,
-        columns: ["frequency", "power"],
+        columns: ["frequency", "power"].map(str::to_owned),
         seen,
     };
     chart.draw(result, &lines, print)
@@ -186,36 +186,36 @@ fn draw_correlation(
         caption::at(&result.subject.family, lines.iter().map(|line| line.value)),
     );
     let chart = Chart {
-        abscissa: "lag $τ$",
+        abscissa: "lag $τ$".to_owned(),
         is_logarithmic: false,
         ordinate: format!("covariance of {}", asked.title),
         is_over_decades: false,
-        columns: ["lag", "covariance"],
+        columns: ["lag", "covariance"].map(str::to_owned),
         seen,
     };
     chart.draw(result, &lines, print)
 }
 
 /// Numbers with their errors at one value of the parameter.
-struct Line {
-    value: f64,
-    places: Vec<(f64, (f64, f64))>,
+pub(super) struct Line {
+    pub(super) value: f64,
+    pub(super) places: Vec<(f64, (f64, f64))>,
 }
 
 /// A panel of lines, one a value of the parameter.
-struct Chart {
-    abscissa: &'static str,
+pub(super) struct Chart {
+    pub(super) abscissa: String,
     /// Whether places along the abscissa are logarithms.
-    is_logarithmic: bool,
-    ordinate: String,
-    is_over_decades: bool,
-    columns: [&'static str; 2],
-    seen: String,
+    pub(super) is_logarithmic: bool,
+    pub(super) ordinate: String,
+    pub(super) is_over_decades: bool,
+    pub(super) columns: [String; 2],
+    pub(super) seen: String,
 }
 
 impl Chart {
     /// The figure; `None` without anything to draw.
-    fn draw(self, result: &SweepResult, lines: &[Line], print: &Print<'_>) -> Drawn {
+    pub(super) fn draw(self, result: &SweepResult, lines: &[Line], print: &Print<'_>) -> Drawn {
         let (family, look) = (&result.subject.family, &print.look);
         let curves = lines.iter().enumerate().map(|(number, line)| Curve {
             name: names::at(family, line.value),
@@ -260,7 +260,7 @@ impl Chart {
         } else {
             Scale::horizontal
         };
-        let across = layout(look, range, wide, self.abscissa);
+        let across = layout(look, range, wide, &self.abscissa);
         let width = left + wide + BESIDE + MARGIN;
         let heading = Heading::new(look, print.title, width);
         let entries = track
@@ -286,8 +286,8 @@ impl Chart {
         });
         let columns = [
             family.parameter(),
-            self.columns[0],
-            self.columns[1],
+            &self.columns[0],
+            &self.columns[1],
             "error",
         ];
         let table = table::table(&columns, rows);

@@ -3,6 +3,7 @@
 
 #[cfg(test)]
 mod angles_tests;
+mod basins;
 mod coarse;
 mod cost;
 mod forcing;

@@ -2,21 +2,23 @@
 
 use std::sync::Arc;
 
+use super::basins::{MOVED, with_intervals};
 use crate::cancellation::Cancellation;
-use crate::continuation::{Finding, Measure, PassageFault, SolveReport};
+use crate::continuation::{Finding, Measure, PassageFault, SolveReport, StateField};
+use crate::density::EstimatedDensity;
 use crate::generator::GeneratorOptions;
 use crate::method::measures::measures_of_passage;
 use crate::method::{GeneratorMethodOptions, MethodError, Problem};
-use crate::passage::{KnownDensity, Passage, PassageError, Timed, timed};
+use crate::passage::{FieldTarget, KnownDensity, Passage, PassageError, Timed, field, timed};
 use crate::stationary::generator::{RateError, RateOptions};
-use crate::system::{PassageQuestion, System};
+use crate::system::{PassageQuestion, Region, System};
 
 /// Error at which times stop to be iterated, relative to their sum. Numbers have its square: they are put right by what
 /// equations from both sides leave.
 const TOLERANCE: f64 = 1e-4;
 
 /// Adds the numbers of all passages at a value to a report, with findings where there are none. `density` is
-/// the steady state.
+/// the steady state, with what is watched of it, in which regions may be found.
 ///
 /// # Errors
 /// [`MethodError::Cancelled`], and errors of values that the family does not have.
@@ -24,7 +26,7 @@ pub(super) fn add_passages(
     report: &mut SolveReport,
     (problem, value): (&Problem, f64),
     system: &Arc<dyn System>,
-    density: Option<KnownDensity<'_>>,
+    (density, watched): (Option<KnownDensity<'_>>, &[EstimatedDensity]),
     options: &GeneratorMethodOptions,
     cancellation: &Cancellation,
 ) -> Result<(), MethodError> {
@@ -42,24 +44,61 @@ pub(super) fn add_passages(
     };
     let values = family.values_at(value)?;
     for (number, question) in family.questions.passages.iter().enumerate() {
-        let passage = Passage::bind(question, &values)?;
         let settings = (&generator, &rates);
-        match timed(
-            system,
-            problem.space(),
-            &passage,
-            density,
-            settings,
-            cancellation,
-        ) {
-            Ok(timed) => report.measures.extend(measures(question, &timed)),
-            Err(PassageError::Rate(RateError::Cancelled(cancelled))) => {
+        let space = problem.space();
+        let mut faults = Vec::new();
+        let solved = |question: &PassageQuestion| -> Result<_, MethodError> {
+            let passage = Passage::bind(question, &values)?;
+            let solved = timed(system, space, &passage, density, settings, cancellation);
+            Ok(solved.map(|timed| measures(question, &timed)))
+        };
+        match question.has_basins() {
+            false => match solved(question)? {
+                Ok(measures) => report.measures.extend(measures),
+                Err(error) => faults.push(error),
+            },
+            true => {
+                let model = family.model();
+                let intervals = |moved| with_intervals(question, model, watched, moved);
+                let all: Option<Vec<PassageQuestion>> = MOVED.into_iter().map(intervals).collect();
+                let Some(all) = all else {
+                    let (passage, fault) = (number, PassageFault::NoPeak);
+                    report.findings.push(Finding::NoPassage { passage, fault });
+                    continue;
+                };
+                let all: Vec<_> = all.iter().map(solved).collect::<Result<_, _>>()?;
+                match all.into_iter().collect::<Result<Vec<_>, _>>() {
+                    Ok(all) => report.measures.extend(with_moved_ends(all)),
+                    Err(error) => faults.push(error),
+                }
+            }
+        }
+        for asked in &question.fields {
+            let bind = |region: &Region| region.level().bind(&values);
+            let target = FieldTarget {
+                until: bind(&asked.until)?,
+                exits: asked.exits.iter().map(bind).collect::<Result<_, _>>()?,
+                part: asked.part,
+            };
+            match field(system, space, &target, settings, cancellation) {
+                Ok(found) => report.fields.push(StateField {
+                    name: asked.name.clone(),
+                    axes: space.axes().to_vec(),
+                    values: found.values,
+                    errors: found.errors,
+                }),
+                Err(error) => faults.push(error),
+            }
+        }
+        for error in faults {
+            if let PassageError::Rate(RateError::Cancelled(cancelled)) = error {
                 return Err(cancelled.into());
             }
-            Err(error) => report.findings.push(Finding::NoPassage {
-                passage: number,
-                fault: fault(&error),
-            }),
+            let (passage, fault) = (number, fault(&error));
+            let finding = Finding::NoPassage { passage, fault };
+            if !report.findings.contains(&finding) {
+                report.findings.push(finding);
+            }
         }
     }
     Ok(())
@@ -70,6 +109,21 @@ fn measures(question: &PassageQuestion, timed: &Timed) -> Vec<Measure> {
     let more = timed.shares.iter().chain(&timed.survival);
     let more = more.chain(&timed.quantiles);
     measures_of_passage(question, moments.into_iter().chain(more.copied()))
+}
+
+/// The first of several readings of the same numbers, with what the others differ by in its errors.
+fn with_moved_ends(all: Vec<Vec<Measure>>) -> Vec<Measure> {
+    let mut readings = all.into_iter();
+    let mut first = readings.next().unwrap_or_default();
+    let others: Vec<Vec<Measure>> = readings.collect();
+    for (place, measure) in first.iter_mut().enumerate() {
+        let changes = others.iter().filter_map(|other| other.get(place));
+        let most = changes.fold(0.0, |most: f64, other| {
+            most.max((other.value - measure.value).abs())
+        });
+        measure.error = measure.error.map(|error| error + most);
+    }
+    first
 }
 
 fn fault(error: &PassageError) -> PassageFault {

@@ -21,6 +21,7 @@ use super::trail::Trail;
 use super::unknowns::distance;
 use crate::cancellation::Cancellation;
 use crate::continuation::{Solution, SolveReport};
+use crate::density::EstimatedDensity;
 use crate::generator::Generator;
 use crate::method::MethodError;
 use crate::method::neighbours::Neighbours;
@@ -86,7 +87,10 @@ impl GeneratorSession {
             let mut solution = one_axis::solution(&self.source, value, system.as_ref(), &found)?;
             let (unknowns, changes) = at_nodes(&found.masses);
             let known = Some((unknowns.as_slice(), changes.as_slice()));
-            self.add_asked(&mut solution.report, value, &system, known)?;
+            let Solution {
+                report, densities, ..
+            } = &mut solution;
+            self.add_asked(report, value, &system, (known, densities))?;
             return Ok(solution);
         }
         let nearest = self.trails.nearest(value).cloned();
@@ -102,7 +106,10 @@ impl GeneratorSession {
         let (mut solution, trail) = self.judge(&solved, before.as_ref())?;
         let newest = trail.as_ref().and_then(Trail::newest);
         let known = newest.map(|newest| (newest.mass.as_slice(), newest.difference.as_slice()));
-        self.add_asked(&mut solution.report, value, &solved.system, known)?;
+        let Solution {
+            report, densities, ..
+        } = &mut solution;
+        self.add_asked(report, value, &solved.system, (known, densities))?;
         let Some(trail) = trail else {
             return Ok(solution);
         };
@@ -119,13 +126,14 @@ impl GeneratorSession {
     }
 
     /// Adds what is asked of first passages, slow modes and spectra at a value, unless densities are all that is asked
-    /// for; `known` are the unknowns of the steady state, and by how much those of another discretisation differ.
+    /// for; `known` are the unknowns of the steady state, and by how much those of another discretisation differ;
+    /// `watched` are its densities.
     fn add_asked(
         &self,
         report: &mut SolveReport,
         value: f64,
         system: &Arc<dyn System>,
-        known: Option<(&[f64], &[f64])>,
+        (known, watched): (Option<(&[f64], &[f64])>, &[EstimatedDensity]),
     ) -> Result<(), MethodError> {
         if self.source.checks {
             return Ok(());
@@ -138,7 +146,14 @@ impl GeneratorSession {
         });
         let (problem, options) = (&self.source.problem, &self.source.options);
         let (asked, cancellation) = ((problem, value), &self.cancellation);
-        add_passages(report, asked, system, density, options, cancellation)?;
+        add_passages(
+            report,
+            asked,
+            system,
+            (density, watched),
+            options,
+            cancellation,
+        )?;
         let at = (system, value);
         add_largest_exponent(report, &self.source, at, known, cancellation)?;
         let unknowns = known.map(|(unknowns, _)| unknowns);

@@ -46,6 +46,16 @@ impl MonteCarloSource {
         let (systems, space) = (problem.family().along()?, problem.space());
         has_no_turns(problem)?;
         has_densities(problem)?;
+        if let Some(one) = problem
+            .family()
+            .questions
+            .passages
+            .iter()
+            .find(|one| one.has_basins())
+        {
+            let passage = one.name.clone();
+            return Err(MethodError::Basin { passage });
+        }
         let mut relaxed: Vec<Relaxation> = Vec::new();
         for system in &systems {
             relaxed.push(relaxation(

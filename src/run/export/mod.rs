@@ -5,9 +5,10 @@ mod netcdf;
 
 use std::path::Path;
 
+use super::arrays::Layout;
 use super::{RunError, arrays, bifurcations_csv};
 use crate::continuation::measure::{DEVIATION, MEAN};
-use crate::continuation::{MeasureKind, Point, SweepResult};
+use crate::continuation::{MeasureKind, Point, StateField, SweepResult};
 use crate::density::{EstimatedDensity, Variants};
 use crate::space::Axis;
 use crate::system::Family;
@@ -152,9 +153,20 @@ impl DataSet {
                 }
             }
         }
+        for field in points.iter().flat_map(|point| &point.report.fields) {
+            for (number, axis) in field.axes.iter().enumerate() {
+                let name = family.axis(number);
+                if arrays.iter().all(|known| known.name != name) {
+                    arrays.extend(axis_arrays(name, axis));
+                }
+            }
+        }
         arrays.extend(moments_at(family, points));
         for (index, density) in densities.enumerate() {
             arrays.extend(density_arrays(family, points, index, density));
+        }
+        for field in family.fields() {
+            arrays.extend(field_arrays(family, points, &field.name));
         }
         let held: serde_json::Map<String, serde_json::Value> = family
             .fixed()
@@ -276,6 +288,48 @@ fn density_arrays(
         arrays.push(all(name, &second, "density by a second discretisation"));
     }
     arrays
+}
+
+/// A field of a passage and its error, where a point has it.
+fn field_arrays(family: &Family, points: &[&Point], name: &str) -> Vec<NamedArray> {
+    let of = |point: &&Point| -> Option<StateField> {
+        point
+            .report
+            .fields
+            .iter()
+            .find(|one| one.name == name)
+            .cloned()
+    };
+    let found: Vec<Option<StateField>> = points.iter().map(of).collect();
+    let Some(like) = found.iter().flatten().next() else {
+        return Vec::new();
+    };
+    Layout::field(family, like)
+        .into_iter()
+        .zip([
+            |one: &StateField| one.values.clone(),
+            |one: &StateField| one.errors.clone(),
+        ])
+        .map(|(layout, numbers)| {
+            let mut dimensions: Vec<(String, usize)> = layout
+                .dimensions
+                .iter()
+                .map(|(name, length)| (name.clone(), *length as usize))
+                .collect();
+            dimensions[0].1 = points.len();
+            let none = vec![f64::NAN; like.values.len()];
+            let values = found
+                .iter()
+                .flat_map(|one| one.as_ref().map_or(none.clone(), numbers));
+            let words = arrays::field_words(name);
+            let words = if layout.name == name {
+                words
+            } else {
+                format!("error of the {words}")
+            };
+            NamedArray::new(layout.name, dimensions, values.collect(), words)
+        })
+        .collect()
 }
 
 #[cfg(test)]

@@ -152,7 +152,8 @@ fn write(folder: &std::path::Path, points: &[Point]) {
         run.add_point(&subject(&OBSERVABLES), point).unwrap();
     }
     let densities = points.iter().filter(|point| !point.densities.is_empty());
-    let densities = densities.map(|point| (point.value, &point.densities[..]));
+    let densities =
+        densities.map(|point| (point.value, &point.densities[..], &point.report.fields[..]));
     let store = folder.join("densities.zarr");
     write_store(&store, &coulomb(), &densities.collect::<Vec<_>>()).unwrap();
     let manifest =

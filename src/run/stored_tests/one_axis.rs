@@ -56,7 +56,7 @@ fn values_by_quadrature_and_on_cells_come_back_as_they_were_solved() {
         }
         let densities = points
             .iter()
-            .map(|point| (point.value, &point.densities[..]));
+            .map(|point| (point.value, &point.densities[..], &point.report.fields[..]));
         let store = folder.path().join("densities.zarr");
         let densities: Vec<_> = densities.collect();
         write_store(&store, &source.subject().family, &densities).unwrap();

@@ -108,6 +108,21 @@ impl Expected {
         within.sum::<f64>() - self.at_held * dot(ends, times)
     }
 
+    /// g + Qᵀ f for another generator and its gain: what its own equation for what is expected is short of.
+    pub(crate) fn left_by(
+        &self,
+        rates: &[(usize, usize, f64)],
+        ends: &[f64],
+        gain: &[f64],
+    ) -> Vec<f64> {
+        let pairs = gain.iter().zip(ends);
+        let mut left: Vec<f64> = pairs.map(|(gain, end)| gain - self.at_held * end).collect();
+        for &(row, column, rate) in rates {
+            left[column] += rate * self.beside[row];
+        }
+        left
+    }
+
     /// The sum of what is expected over a start.
     pub(crate) fn over(&self, start: &[f64]) -> f64 {
         dot(&self.beside, start) + self.at_held * start.iter().sum::<f64>()

@@ -9,7 +9,7 @@ use crate::generator::AdvectiveScheme;
 use crate::method::{Correction, DerivedMeasure, Estimator, StepChoice};
 use crate::sampling::Integrator;
 use crate::stationary::Solver;
-use crate::system::{Interpretation, Model, NoiseKind, Sides, registry};
+use crate::system::{FieldKind, Interpretation, Model, NoiseKind, Sides, registry};
 
 /// A type of the program as the file has it.
 pub(super) trait InFile: Sized {
@@ -259,6 +259,7 @@ named!(
     Integrator,
     Interpretation,
     MethodKind,
+    FieldKind,
     NoiseKind,
     Sides,
     Solver,

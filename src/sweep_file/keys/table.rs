@@ -18,7 +18,7 @@ use crate::sampling::Integrator;
 use crate::space::MOST_MODES;
 use crate::stationary::Solver;
 use crate::sweep_file::draft::{ExponentKind, MethodKind};
-use crate::system::{Interpretation, NoiseKind, Sides, registry};
+use crate::system::{FieldKind, Interpretation, NoiseKind, Sides, registry};
 
 /// Most cells an axis may have: edges are stored, so a slip of the pen must not fill the memory.
 const MOST_CELLS: i128 = 1_000_000;
@@ -194,7 +194,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
             get: |draft, name| draft.regions.iter().find(|(known, _)| known == name).map(|(_, text)| text.to_plain()),
             set: |draft, name, plain| super::field::set_formulas(&mut draft.regions, name, plain),
         },
-        "A region of the state by inequalities, for example `left = \"x < -0.2 and y > 0\"`, joined by `and`, `or`, `not`; names of other regions may stand in it."),
+        "A region of the state by inequalities, for example `left = \"x < -0.2 and y > 0\"`, joined by `and`, `or`, `not`; names of other regions may stand in it. Or the basin of a peak of a watched density: `peak 2 of x`, the second from the left."),
     key("passage.<passage>.from", Kind::Text, Rule("`start`"), of_passage!(from),
         "Where a passage starts: in a region (by its name, or an inequality), spread as the steady state is there, or `density`, spread as it is everywhere."),
     key("passage.<passage>.start.<axis>", Kind::Number(ANY), Rule("`from`"),
@@ -220,6 +220,8 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "Another word for `until`, which goes with `from`: `exit = { from = \"left\", to = \"right\" }`."),
     key("passage.<passage>.switching", Kind::Choice(switch), Rule("`off`"), of_passage!(switching),
         "Whether the rates from the region `from` to the region `to` and back are wanted as the slowest mode has them (docs/passage.md)."),
+    key("passage.<passage>.fields", Kind::List(&Kind::Choice(FieldKind::words)), Rule("none"), of_passage!(fields),
+        "What is wanted over all states of one or two axes in which a passage may start, as arrays of `densities.zarr` and figures: `mean-time`, and `committor`, the probability to enter the region `to` before the region `from`, or each region of `until` before the others."),
     key("passage.<passage>.times", Kind::List(&Kind::Number(POSITIVE)), Rule("none"), of_passage!(times),
         "Times at which the probability is wanted that a passage still goes on."),
     key("passage.<passage>.quantiles", Kind::List(&Kind::Number(OPEN_UNIT)), Rule("none"), of_passage!(quantiles),

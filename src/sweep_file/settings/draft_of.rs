@@ -7,7 +7,7 @@ use crate::sweep_file::draft::{
     Auto, AxisDraft, BinsDraft, CurveDraft, Draft, EndKind, EquationsDraft, ExponentKind, MapDraft,
     PassageDraft,
 };
-use crate::system::{Model, NoiseKind, PassageStart, Region};
+use crate::system::{FieldKind, Model, NoiseKind, PassageStart, Region};
 
 impl Settings {
     /// What a complete file says.
@@ -187,6 +187,11 @@ impl Settings {
                 _ => Vec::new(),
             },
             switching: one.switching.then_some(true),
+            fields: {
+                let has = |kind: &FieldKind| one.fields.iter().any(|field| field.kind == *kind);
+                let asked: Vec<FieldKind> = FieldKind::ALL.into_iter().filter(has).collect();
+                (!asked.is_empty()).then_some(asked)
+            },
             times: (!one.times.is_empty()).then(|| one.times.clone()),
             quantiles: (!one.quantiles.is_empty()).then(|| one.quantiles.clone()),
         });

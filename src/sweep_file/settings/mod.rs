@@ -130,7 +130,7 @@ impl Settings {
         family.questions.averaged = watched.averaged;
         family = walls::read(&mut reader, &draft, family, &axes);
         (family.questions.regions, family.questions.passages) =
-            passages::read(&mut reader, &draft, family.model());
+            passages::read(&mut reader, &draft, family.model(), &watched.observables);
         exponent::read(&mut reader, &draft, &mut family);
         family.questions.slow_modes = relaxation::read(&mut reader, &draft);
         family.questions.spectrum = spectrum::read(&mut reader, &draft, &family);

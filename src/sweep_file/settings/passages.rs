@@ -1,12 +1,15 @@
 //! Regions and questions of first passage as a file has them, with the place of everything that is wrong with them.
 
+use crate::density::Observable;
 use crate::formula::language::check_name;
 use crate::sweep_file::diagnostic::{Diagnostic, Place};
 use crate::sweep_file::draft::{Draft, MethodKind, PassageDraft};
 use crate::sweep_file::formula_place::inside;
 use crate::sweep_file::names::quotable;
 use crate::sweep_file::reader::Reader;
-use crate::system::{Model, PassageQuestion, PassageStart, Region, RegionError, regions};
+use crate::system::{
+    FieldKind, FieldQuestion, Model, PassageQuestion, PassageStart, Region, RegionError, regions,
+};
 
 /// The word for a start that is spread as the steady state is.
 pub(super) const DENSITY: &str = "density";
@@ -25,6 +28,7 @@ pub(super) fn read(
     reader: &mut Reader<'_>,
     draft: &Draft,
     model: &Model,
+    watched: &[Observable],
 ) -> (Vec<Region>, Vec<PassageQuestion>) {
     let mut given = Vec::new();
     for entry in reader.entries(&["regions"]) {
@@ -69,12 +73,23 @@ pub(super) fn read(
             return (Vec::new(), Vec::new());
         }
     };
-    let questions = asked
-        .into_iter()
-        .map(|(passage, (until, exits, start))| PassageQuestion {
+    let questions = asked.into_iter().map(
+        |(
+            passage,
+            Ends {
+                until,
+                exits,
+                start,
+                fields,
+            },
+        )| PassageQuestion {
             name: passage.name.clone(),
             until: read[until].clone(),
             exits: exits.into_iter().map(|part| read[part].clone()).collect(),
+            fields: fields
+                .into_iter()
+                .map(|field| field.question(&read))
+                .collect(),
             start: match start {
                 GivenStart::State(state) => PassageStart::State(state),
                 GivenStart::Region(region) => PassageStart::Region(read[region].clone()),
@@ -83,9 +98,60 @@ pub(super) fn read(
             switching: passage.switching == Some(true),
             times: ascending(passage.times.as_ref()),
             quantiles: ascending(passage.quantiles.as_ref()),
-        });
-    let questions = questions.collect();
+        },
+    );
+    let questions: Vec<PassageQuestion> = questions.collect();
+    for question in &questions {
+        check_basins(reader, (draft, model), question, watched);
+    }
     (read.into_iter().take(named).collect(), questions)
+}
+
+/// The basin of a peak is known to the generator at each value, from a density that is watched.
+fn check_basins(
+    reader: &mut Reader<'_>,
+    (draft, model): (&Draft, &Model),
+    question: &PassageQuestion,
+    watched: &[Observable],
+) {
+    let start = match &question.start {
+        PassageStart::Region(region) => Some(region),
+        PassageStart::State(_) | PassageStart::Density => None,
+    };
+    let basins = [Some(&question.until), start]
+        .into_iter()
+        .flatten()
+        .filter_map(Region::basin);
+    for basin in basins {
+        let (name, axis) = (&question.name, &model.axes[basin.axis].name);
+        let is_watched = watched.contains(&Observable::Marginal(basin.axis));
+        let (title, remedy) = if draft.method.kind != MethodKind::Generator {
+            let title = format!(
+                "passage `{name}` is to the basin of a peak, which is found by `generator` alone"
+            );
+            (
+                title,
+                "set `method.kind = \"generator\"`, or give an inequality".to_owned(),
+            )
+        } else if !question.fields.is_empty() || question.switching {
+            let title = format!(
+                "passage `{name}` has the basin of a peak, and asks for fields or rates between states"
+            );
+            (
+                title,
+                "give inequalities, or leave `fields` and `switching` out".to_owned(),
+            )
+        } else if !is_watched {
+            let title = format!(
+                "passage `{name}` has the basin of a peak of `{axis}`, whose density is not watched"
+            );
+            (title, format!("add \"{axis}\" to `detect.marginals`"))
+        } else {
+            continue;
+        };
+        refuse(reader, name, title, &remedy);
+        return;
+    }
 }
 
 /// Numbers in their order, each once.
@@ -112,7 +178,15 @@ fn check_method(reader: &mut Reader<'_>, draft: &Draft) {
     reader.report(diagnostic.at(place, "this passage"));
 }
 
-/// Where a passage starts, regions by their numbers among those that are given.
+/// What a passage is between, regions by their numbers among those that are given.
+struct Ends {
+    until: usize,
+    exits: Vec<usize>,
+    start: GivenStart,
+    fields: Vec<GivenField>,
+}
+
+/// Where a passage starts.
 enum GivenStart {
     State(Vec<f64>),
     Region(usize),
@@ -125,18 +199,24 @@ fn ends(
     (draft, passage): (&Draft, &PassageDraft),
     given: &mut Vec<Given>,
     model: &Model,
-) -> Option<(usize, Vec<usize>, GivenStart)> {
+) -> Option<Ends> {
     let name = passage.name.as_str();
     let mut exits = Vec::new();
     // Any of several regions ends the passage.
     let either = passage.exits.as_ref().map(|parts| {
         let texts = parts.iter().enumerate().map(|(part, text)| {
             let own = PassageQuestion::exit_name(name, part);
-            exits.push(region(reader, given, name, ("until", own), text));
+            let number = region(reader, given, name, ("until", own), text);
+            exits.push(number);
             format!("({text})")
         });
         texts.collect::<Vec<_>>().join(" or ")
     });
+    if exits.iter().any(|&part| is_basin(&given[part].text)) {
+        let title = format!("passage `{name}` has the basin of a peak among several regions");
+        refuse(reader, name, title, "give inequalities, or the basin alone");
+        return None;
+    }
     let (word, until) = match (either.as_ref().or(passage.until.as_ref()), &passage.to) {
         (Some(until), None) => ("until", until),
         (None, Some(to)) => ("to", to),
@@ -179,7 +259,13 @@ fn ends(
     if passage.switching == Some(true) && !may_switch(reader, draft, passage, &start) {
         return None;
     }
-    Some((until, exits, start))
+    let fields = fields(reader, (draft, passage), given, (until, &exits, &start))?;
+    Some(Ends {
+        until,
+        exits,
+        start,
+        fields,
+    })
 }
 
 /// Whether rates between two states can be asked for: by the generator, of a passage between regions.
@@ -207,6 +293,111 @@ fn may_switch(
         return false;
     }
     true
+}
+
+/// A field of a passage, regions by their numbers.
+struct GivenField {
+    name: String,
+    kind: FieldKind,
+    until: usize,
+    exits: Vec<usize>,
+    part: Option<usize>,
+}
+
+impl GivenField {
+    fn question(self, read: &[Region]) -> FieldQuestion {
+        FieldQuestion {
+            name: self.name,
+            kind: self.kind,
+            until: read[self.until].clone(),
+            exits: self
+                .exits
+                .into_iter()
+                .map(|part| read[part].clone())
+                .collect(),
+            part: self.part,
+        }
+    }
+}
+
+/// The fields of a passage: by the generator, and a committor between regions; `None` where they cannot be asked for.
+fn fields(
+    reader: &mut Reader<'_>,
+    (draft, passage): (&Draft, &PassageDraft),
+    given: &mut Vec<Given>,
+    (until, exits, start): (usize, &[usize], &GivenStart),
+) -> Option<Vec<GivenField>> {
+    let (name, mut all) = (passage.name.as_str(), Vec::new());
+    let asked = passage.fields.iter().flatten();
+    if asked.clone().next().is_some() && draft.method.kind != MethodKind::Generator {
+        let method = draft.method.kind.name();
+        let title = format!("fields of passages are worked out by `generator`, not by `{method}`");
+        let remedy = "set `method.kind = \"generator\"`, or leave `fields` out";
+        refuse(reader, name, title, remedy);
+        return None;
+    }
+    for kind in FieldKind::ALL
+        .into_iter()
+        .filter(|kind| asked.clone().any(|one| one == kind))
+    {
+        let array = |of: &str| format!("{name}_{of}");
+        let mut add = |name, (until, exits): (usize, &[usize]), part| {
+            let exits = exits.to_vec();
+            all.push(GivenField {
+                name,
+                kind,
+                until,
+                exits,
+                part,
+            });
+        };
+        match (kind, start) {
+            (FieldKind::MeanTime, _) => add(array("mean_time"), (until, &[]), None),
+            (FieldKind::Committor, _) if !exits.is_empty() => {
+                for part in 0..exits.len() {
+                    let of = format!("{}_committor", exit_label(name, part, given, exits));
+                    add(array(&of), (until, exits), Some(part));
+                }
+            }
+            (FieldKind::Committor, &GivenStart::Region(from)) => {
+                let (one, other) = (&given[from].text, &given[until].text);
+                if is_basin(one) || is_basin(other) {
+                    let title =
+                        format!("passage `{name}` asks for a committor between basins of peaks");
+                    refuse(reader, name, title, "give inequalities as `from` and `to`");
+                    return None;
+                }
+                let either = format!("({one}) or ({other})");
+                let own = ("from", format!("{name}_from_or_to"));
+                let both = region(reader, given, name, own, &either);
+                given[both].is_joined = true;
+                add(array("committor"), (both, &[from, until]), Some(1));
+            }
+            (FieldKind::Committor, _) => {
+                let title =
+                    format!("passage `{name}` asks for a committor, and is not between regions");
+                let remedy = "give the two regions as `from` and `to`, or as a list of `until`";
+                refuse(reader, name, title, remedy);
+                return None;
+            }
+        }
+    }
+    Some(all)
+}
+
+/// Whether a region is the basin of a peak, as `peak 2 of x` is.
+fn is_basin(text: &str) -> bool {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    matches!(words[..], ["peak", _, "of", _])
+}
+
+/// What arrays call a region of several that end a passage.
+fn exit_label(passage: &str, part: usize, given: &[Given], exits: &[usize]) -> String {
+    let known = &given[exits[part]].name;
+    match *known == PassageQuestion::exit_name(passage, part) {
+        true => (part + 1).to_string(),
+        false => known.clone(),
+    }
 }
 
 /// The number of a region that a passage names, or gives as an inequality.

@@ -49,7 +49,7 @@ fn the_resolved_file_gives_the_same_sweep() {
     }
 }
 
-const EQUATIONS: &str = r#"
+pub(super) const EQUATIONS: &str = r#"
 [system]
 title = "by hand"
 [system.equations]

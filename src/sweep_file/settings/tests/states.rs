@@ -1,5 +1,6 @@
 //! Settings of internal states and of noise with memory: axes of modes, and where they cannot be.
 
+use super::resolved::EQUATIONS;
 use super::*;
 
 #[test]

@@ -1,0 +1,272 @@
+//! Numbers of a passage as fields over the state where it starts: the mean time, or the probability that one part of a
+//! target is entered first (the committor, for two parts).
+//!
+//! With Q on the cells outside of the target, Qᵀ f = -g has what a process is expected to gather from each cell: with
+//! a gain of one a unit of time the mean time, with the rates into a part the share that ends there. Another scheme Q'
+//! adds δf with Qᵀ δf = -(g' + Q'ᵀ f), to first order of what both differ by. Grids and their differences are those of
+//! the numbers (`timed.rs`); what they differ by at a state is taken as an error about that state, because a difference
+//! that changes its sign vanishes somewhere.
+
+use std::sync::Arc;
+
+use super::cells::cells;
+use super::exits::Exits;
+use super::nodes::{FEWER_NODES, NODES};
+use super::rim::{beside_border, mend, rim};
+use super::solve::enclosed;
+use super::start::{at_state, at_states_of};
+use super::timed::{BORDER_ORDER, DAMPED, FEWER};
+use super::{Passage, PassageError, Start};
+use crate::cancellation::Cancellation;
+use crate::generator::{
+    AbsorbingGenerator, Closure, Dissipation, GeneratorOptions, assemble_absorbing,
+};
+use crate::space::CellSpace;
+use crate::stationary::generator::{AbsorbingSolver, RateOptions};
+use crate::system::{BoundQuantity, System};
+
+/// States beside one along each axis, in cells, whose differences are an error there too.
+const BESIDE: usize = 2;
+
+/// Error at which solves stop to be iterated: nothing puts right what a field leaves.
+const TOLERANCE: f64 = 1e-10;
+
+/// A field is asked for over all states.
+#[derive(Debug, Clone)]
+pub struct FieldTarget {
+    /// Negative in the region at whose border a process ends.
+    pub until: BoundQuantity,
+    /// Parts of that region, negative inside each.
+    pub exits: Vec<BoundQuantity>,
+    /// The part whose probability is wanted; the mean time without one.
+    pub part: Option<usize>,
+}
+
+/// A field at the centres of cells, with its errors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PassageField {
+    /// One number a cell, the last axis fastest.
+    pub values: Vec<f64>,
+    /// Errors, none inside the target.
+    pub errors: Vec<f64>,
+}
+
+/// A field by one grid at the states that are asked for: extrapolated to no dissipation, what half of it changes, and
+/// what a border of lower order changes.
+struct OnGrid {
+    values: Vec<Option<f64>>,
+    halved: Vec<Option<f64>>,
+    border: Vec<Option<f64>>,
+}
+
+/// The field of a passage of a system at the centres of the cells of a sweep. Inside the target it is what the target
+/// says: no time, and a probability of one or none.
+///
+/// # Errors
+/// [`PassageError`].
+pub fn field(
+    system: &Arc<dyn System>,
+    space: &CellSpace,
+    target: &FieldTarget,
+    (options, rates): (&GeneratorOptions, &RateOptions),
+    cancellation: &Cancellation,
+) -> Result<PassageField, PassageError> {
+    let rates = RateOptions {
+        tolerance: TOLERANCE,
+        ..*rates
+    };
+    let question = FieldQuestion {
+        system,
+        space,
+        target,
+        options,
+        rates,
+        cancellation,
+    };
+    let solve = |factor: f64| question.on_grid(factor);
+    let [(more, of_more), (fewest, of_fewest)] = FEWER;
+    let (finest, (coarse, coarsest)) = rayon::join(
+        || solve(1.0),
+        || rayon::join(|| solve(more), || solve(fewest)),
+    );
+    let (finest, coarse, coarsest) = (finest?, coarse?, coarsest?);
+    let mut errors: Vec<f64> = finest
+        .halved
+        .iter()
+        .map(|change| DAMPED * size(*change))
+        .collect();
+    let mut border: Vec<f64> = finest.border.iter().map(|change| size(*change)).collect();
+    for (other, factor, times) in [(coarse, more, of_more), (coarsest, fewest, of_fewest)] {
+        for (error, (own, other)) in errors
+            .iter_mut()
+            .zip(finest.values.iter().zip(&other.values))
+        {
+            let change = own.zip(*other).map(|(own, other)| own - other);
+            *error = error.max(times * size(change));
+        }
+        let scale = f64::powi(factor, BORDER_ORDER);
+        for (error, change) in border.iter_mut().zip(&other.border) {
+            *error = error.max(scale * size(*change));
+        }
+    }
+    let errors = errors
+        .iter()
+        .zip(border)
+        .map(|(error, border)| error + border);
+    let errors = greatest_beside(space, &errors.collect::<Vec<f64>>());
+    Ok(question.whole(&finest.values, &errors))
+}
+
+/// A field with what it is solved with.
+struct FieldQuestion<'a> {
+    system: &'a Arc<dyn System>,
+    space: &'a CellSpace,
+    target: &'a FieldTarget,
+    options: &'a GeneratorOptions,
+    rates: RateOptions,
+    cancellation: &'a Cancellation,
+}
+
+impl FieldQuestion<'_> {
+    /// The field by a grid of `factor` times the sweep's cells an axis.
+    fn on_grid(&self, factor: f64) -> Result<OnGrid, PassageError> {
+        let until = &self.target.until;
+        let found = cells(self.system.as_ref(), self.space, until, factor)?;
+        let enclosed = enclosed(self.system, &found);
+        let space = found.space;
+        let assemble = |dissipation, closure| {
+            let scheme = (dissipation, closure);
+            assemble_absorbing(&enclosed, &space, until, self.options, scheme)
+        };
+        let full = assemble(Dissipation::Full, Closure::Fourth)?;
+        if full.ends.iter().all(|&rate| rate == 0.0) {
+            return Err(PassageError::Never);
+        }
+        let others = [
+            assemble(Dissipation::Half, Closure::Fourth)?,
+            assemble(Dissipation::Full, Closure::Third)?,
+        ];
+        let passage = Passage {
+            until: until.clone(),
+            exits: self.target.exits.clone(),
+            start: Start::Density(None),
+            times: Vec::new(),
+            quantiles: Vec::new(),
+        };
+        let exits = Exits::new(&passage, &space, &full.kept);
+        let gain = |generator: &AbsorbingGenerator| match self.target.part {
+            Some(part) => exits.rates(generator).swap_remove(part),
+            None => generator.weights[0].clone(),
+        };
+        let kept = full.kept.iter().filter(|&&kept| kept).count() as f64;
+        let even: Vec<f64> = full
+            .kept
+            .iter()
+            .map(|&is| f64::from(u8::from(is)) / kept)
+            .collect();
+        let matrix = full.matrix();
+        let mut solver = AbsorbingSolver::new(&space, self.rates, self.cancellation);
+        let (stage, _) = solver.stage(&matrix, &full.ends, &even)?;
+        let expected = solver.expected(&stage, &gain(&full))?;
+        let [halved, border] = others.map(|other| {
+            let left = expected.left_by(&other.rates, &other.ends, &gain(&other));
+            Ok::<_, PassageError>(solver.expected(&stage, &left)?.values())
+        });
+        let (mut halved, mut border) = (halved?, border?);
+        if self.target.part.is_none() {
+            // Another way to end sums at an oblique border.
+            let [one, other] = &full.weights;
+            let change: Vec<f64> = one
+                .iter()
+                .zip(other)
+                .map(|(one, other)| other - one)
+                .collect();
+            let change = solver.expected(&stage, &change)?.values();
+            let pairs = border.iter_mut().zip(change);
+            pairs.for_each(|(border, change)| *border = border.abs() + change.abs());
+        }
+        let pairs = expected.values().into_iter().zip(&halved);
+        let mut values: Vec<f64> = pairs.map(|(value, change)| value + 2.0 * change).collect();
+        let rim = rim(self.system.as_ref(), (&space, &full.kept), until);
+        mend(&mut values, &rim, |state| self.inside(state));
+        mend(&mut halved, &rim, |_| 0.0);
+        mend(&mut border, &rim, |_| 0.0);
+        let places: Vec<Vec<f64>> = self
+            .space
+            .axes()
+            .iter()
+            .map(|axis| axis.centres())
+            .collect();
+        let (system, kept) = (self.system.as_ref(), (&space, full.kept.as_slice()));
+        let at = |field: &[f64], on_border: &dyn Fn(&[f64]) -> f64| {
+            let inner = |state: &[f64]| at_state(kept, state, FEWER_NODES, field);
+            let near = |state: &[f64]| {
+                let found = beside_border(system, (&space, until), state, inner, on_border);
+                found.or_else(|| at_state(kept, state, NODES, field))
+            };
+            at_states_of(&places, kept, until, field, near)
+        };
+        Ok(OnGrid {
+            values: at(&values, &|state| self.inside(state)),
+            halved: at(&halved, &|_| 0.0),
+            border: at(&border, &|_| 0.0),
+        })
+    }
+
+    /// The field with what it is inside the target, within the values that it can have.
+    fn whole(&self, values: &[Option<f64>], errors: &[f64]) -> PassageField {
+        let most = if self.target.part.is_some() {
+            1.0
+        } else {
+            f64::INFINITY
+        };
+        let of_cell = |(cell, (value, error)): (usize, (&Option<f64>, &f64))| {
+            let state = self.space.centre(cell);
+            match value {
+                // No value that it can have is farther away than the ends of their range.
+                Some(value) => {
+                    let value = value.clamp(0.0, most);
+                    (value, error.min(value.max(most - value)))
+                }
+                None if self.target.until.at(&state) < 0.0 => (self.inside(&state), 0.0),
+                // No node of the grid is near.
+                None => (f64::NAN, f64::NAN),
+            }
+        };
+        let both = values.iter().zip(errors).enumerate().map(of_cell);
+        let (values, errors) = both.unzip();
+        PassageField { values, errors }
+    }
+
+    fn inside(&self, state: &[f64]) -> f64 {
+        let Some(part) = self.target.part else {
+            return 0.0;
+        };
+        let levels = self.target.exits.iter().map(|exit| exit.at(state));
+        let least = levels
+            .enumerate()
+            .min_by(|one, other| one.1.total_cmp(&other.1));
+        f64::from(u8::from(least.is_some_and(|(found, _)| found == part)))
+    }
+}
+
+fn size(change: Option<f64>) -> f64 {
+    change.map_or(0.0, f64::abs)
+}
+
+/// The greatest of the numbers of a cell and those beside it along every axis.
+fn greatest_beside(space: &CellSpace, numbers: &[f64]) -> Vec<f64> {
+    let mut all = numbers.to_vec();
+    let shape = space.shape();
+    for (axis, &count) in shape.iter().enumerate() {
+        let stride: usize = shape[axis + 1..].iter().product();
+        let before = all.clone();
+        for (cell, greatest) in all.iter_mut().enumerate() {
+            let at = cell / stride % count;
+            let others = at.saturating_sub(BESIDE)..=(at + BESIDE).min(count - 1);
+            let others = others.map(|other| before[cell + other * stride - at * stride]);
+            *greatest = others.fold(*greatest, f64::max);
+        }
+    }
+    all
+}
