@@ -65,6 +65,8 @@ fn result(points: Vec<Point>) -> SweepResult {
         points,
         labels: Vec::new(),
         checks: None,
+        looks: Vec::new(),
+        looks: Vec::new(),
         interrupted: false,
     }
 }
