@@ -119,7 +119,6 @@ fn result(points: Vec<Point>) -> SweepResult {
         labels: Vec::new(),
         checks: None,
         looks: Vec::new(),
-        looks: Vec::new(),
         interrupted: false,
     }
 }
