@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::closer::{CloserLook, with_looks};
 use super::distances::fill_all_distances;
 use super::doubt::{CheckedBy, Doubt};
 use super::grid::{Checked, CheckedIndicator, Checks, FinerZero, Seen, check, known, leak};
@@ -15,12 +16,13 @@ use crate::topology::Detector;
 ///
 /// Located values are checked against `checks`, what a sweep saw in its checks ([`SweepResult::checks`]). With
 /// unchanged settings that is the same check. Other settings may ask for values that were not solved: the zero then
-/// comes from those that were, and a change near which there are none is unconfirmed.
+/// comes from those that were, and a change near which there are none is unconfirmed. What closer looks of that sweep
+/// have found, with the same settings, takes the place of rows in doubt as it did then.
 pub(crate) fn detect_again(
     (subject, given): (Subject, usize),
     detector: &dyn Detector,
     mut points: Vec<Point>,
-    checks: Option<Vec<CheckedIndicator>>,
+    (checks, looks): (Option<Vec<CheckedIndicator>>, Vec<CloserLook>),
     options: &LocateOptions,
 ) -> SweepResult {
     points.sort_by(|a, b| a.value.total_cmp(&b.value));
@@ -36,11 +38,13 @@ pub(crate) fn detect_again(
         options,
     };
     let labels = label_points(&points, &subject, detector, options, &mut repeated);
+    let labels = with_looks(labels, &looks, (&points, &subject.observables));
     SweepResult {
         subject,
         points,
         labels,
         checks,
+        looks,
         interrupted: false,
     }
 }

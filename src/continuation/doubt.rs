@@ -8,6 +8,7 @@ use crate::space::Axis;
 
 /// How well a P-bifurcation is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum BifurcationStatus {
     /// Its bracket and its error are within the tolerance, and finer cells, where there are any, show it too.
     Located,
@@ -44,6 +45,7 @@ impl BifurcationStatus {
 
 /// What a located value is checked by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum CheckedBy {
     /// The same source on cells that were refined so many times, one to three.
     FinerCells(u8),
@@ -76,6 +78,7 @@ impl CheckedBy {
 
 /// A reason why a located value may not be what it says.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Doubt {
     /// Finer cells show no such change near.
     NotOnFinerCells,
@@ -193,6 +196,7 @@ pub(super) fn status_of(doubts: &[Doubt]) -> BifurcationStatus {
 
 /// An axis along which mass leaves, and the range that would hold it, if its moments are known.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WiderRange {
     /// Name of the axis.
     pub axis: String,

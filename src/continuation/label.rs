@@ -52,6 +52,7 @@ pub struct RowWords {
 
 /// A P-bifurcation of a sweep.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Located {
     /// `PB` and its ordinal.
     pub label: String,
@@ -79,6 +80,7 @@ pub struct Located {
 
 /// A zero of an indicator.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Zero {
     /// The indicator.
     pub indicator: IndicatorKind,

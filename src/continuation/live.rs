@@ -132,7 +132,7 @@ impl<'a> Live<'a> {
 }
 
 /// The source whose cells are refined so many times.
-fn refined(
+pub(super) fn refined(
     source: &dyn DensitySource,
     want: &Want,
     times: u8,

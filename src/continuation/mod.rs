@@ -36,6 +36,7 @@ mod at_rest;
 mod beside;
 mod bracket;
 mod change;
+mod closer;
 pub mod curve;
 mod d_bifurcations;
 mod dips;
@@ -66,9 +67,11 @@ mod source;
 mod span;
 mod state_field;
 mod sweep;
+mod walk;
 mod wanted;
 
 pub(crate) use again::detect_again;
+pub use closer::CloserLook;
 pub use doubt::{BifurcationStatus, CheckedBy, Doubt, WiderRange};
 pub use error::SweepError;
 #[cfg(test)]
@@ -109,8 +112,9 @@ pub struct LocateOptions {
     /// Whether located values are checked on a finer grid, where the source has one; those that could be, and are not,
     /// are [`BifurcationStatus::Unchecked`].
     pub grid_check: bool,
-    /// Work for values whose error exceeds the tolerance after that check, on cells that are refined again: as a
-    /// multiple of the work of the sweep, counted in solves on its cells.
+    /// Work for changes that are in doubt after that check, on cells that are refined again: as a multiple of the work
+    /// of the sweep, counted in solves on its cells. Stretches around such changes are swept again within this multiple
+    /// of 200 solves on 100 × 100 cells where that is more.
     pub effort: f64,
 }
 
@@ -170,6 +174,8 @@ pub struct SweepResult {
     pub labels: Vec<Label>,
     /// What was seen in the checks of located values; `None` where there was none.
     pub checks: Option<Vec<CheckedIndicator>>,
+    /// What closer looks on finer cells have found, in the order in which their rows took the place of others.
+    pub looks: Vec<CloserLook>,
     /// Whether the sweep was interrupted before it was complete.
     pub interrupted: bool,
 }

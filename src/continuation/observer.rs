@@ -26,6 +26,11 @@ pub trait Observer: Send {
         Ok(())
     }
 
+    /// A stretch of the sweep is swept again on finer cells, because the cells leave a change in doubt there.
+    fn closer_look(&mut self, stretch: [f64; 2]) {
+        let _ = stretch;
+    }
+
     /// What earlier checks of the same sweep saw, those of its shards for example: asked for once, before the first
     /// value is checked. It is taken for seen, not solved again.
     fn known_checks(&mut self) -> Vec<CheckedIndicator> {

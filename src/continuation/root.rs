@@ -10,6 +10,7 @@ use crate::topology::{Detector, Indicator, two_sided_limit};
 /// The parts of the error of a P-bifurcation's value, in units of the parameter; each bounds its part at the
 /// confidence of detection.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ErrorParts {
     /// Solver, and the straight line between the two points.
     pub solver: f64,

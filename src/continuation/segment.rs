@@ -66,6 +66,14 @@ impl<'a> Work<'a> {
         }
     }
 
+    pub(super) fn source(&self) -> &'a dyn DensitySource {
+        self.source
+    }
+
+    pub(super) fn detector(&self) -> &'a dyn Detector {
+        self.detector
+    }
+
     /// Whether the sweep is to end, so that values are left out from now on.
     fn ends(&self) -> bool {
         if self.cancellation.is_cancelled() {
@@ -109,6 +117,12 @@ impl<'a> Work<'a> {
         let flanks = densities.map(|one| self.detector.flanks(one)).collect();
         self.tell(&point, is_given)?;
         Ok(Some(Solved { point, flanks }))
+    }
+
+    /// Tells the observer of a stretch that is swept again on finer cells.
+    pub(super) fn tell_of_closer_look(&self, stretch: [f64; 2]) {
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        told.observer.closer_look(stretch);
     }
 
     /// Tells the observer of a point. Nothing that is done with the lock held waits for another thread.

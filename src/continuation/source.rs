@@ -148,6 +148,10 @@ impl<S: DensitySource + ?Sized> DensitySource for Box<S> {
         self.as_ref().segments(values)
     }
 
+    fn cells(&self) -> Option<usize> {
+        self.as_ref().cells()
+    }
+
     fn finer(&self, want: &Want) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
         self.as_ref().finer(want)
     }
@@ -254,6 +258,11 @@ pub trait DensitySource: Send + Sync {
     fn segments(&self, values: usize) -> usize {
         let _ = values;
         1
+    }
+
+    /// How many cells a solve has; `None` where it has none.
+    fn cells(&self) -> Option<usize> {
+        None
     }
 
     /// The same source on finer cells, to check what was found; `None` where there is none, or it would say nothing

@@ -15,6 +15,11 @@ impl Span {
     /// Of a sweep with that many given values.
     pub(super) fn new(subject: &Subject, points: usize) -> Self {
         let (lower, upper) = subject.family.range();
+        Self::over([lower, upper], points)
+    }
+
+    /// Of a stretch with that many given values.
+    pub(super) fn over([lower, upper]: [f64; 2], points: usize) -> Self {
         Self {
             lower,
             upper,

@@ -103,7 +103,7 @@ impl<'a> SweepJob<'a> {
         let swept = (sweep.problem.subject().clone(), sweep.settings.points);
         let Gathered { points, checks } = gathered;
         let (detector, locate) = (sweep.detector(), &sweep.settings.locate);
-        let mut result = detect_again(swept, &detector, points, checks, locate);
+        let mut result = detect_again(swept, &detector, points, (checks, Vec::new()), locate);
         result.interrupted = true;
         result
     }

@@ -87,6 +87,10 @@ impl DensitySource for MethodSource {
         self.source().segments(values)
     }
 
+    fn cells(&self) -> Option<usize> {
+        self.source().cells()
+    }
+
     fn finer(&self, want: &Want) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
         self.source().finer(want)
     }

@@ -24,6 +24,14 @@ pub enum RunError {
     /// A value cannot be written as JSON.
     #[error("cannot compose JSON: {0}")]
     Json(#[from] serde_json::Error),
+    /// What closer looks have found cannot be read.
+    #[error("{} is not what a sweep of pbif has left: {source}", path.display())]
+    Looks {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: serde_json::Error,
+    },
     /// Another process writes to the folder.
     #[error("`{}` is being written to by {holder}", path.display())]
     InUse {

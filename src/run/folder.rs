@@ -5,6 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::atomic::{sync_all, write_atomically, write_durably};
 use super::growing::GrowingTable;
+use super::layout::LOOKS;
 use super::spectra::fluctuation_files;
 use super::store::write_store;
 use super::{
@@ -180,6 +181,7 @@ pub(crate) fn sweep_files(result: &SweepResult) -> Result<Vec<(String, String)>,
         points,
         labels,
         checks,
+        looks,
         ..
     } = result;
     let family = &subject.family;
@@ -193,6 +195,9 @@ pub(crate) fn sweep_files(result: &SweepResult) -> Result<Vec<(String, String)>,
     ];
     if let Some(checks) = checks {
         files.push(("checks.csv", checks::checks_csv(subject, checks)?));
+    }
+    if !looks.is_empty() {
+        files.push((LOOKS, serde_json::to_string_pretty(looks)? + "\n"));
     }
     files.extend(fluctuation_files(family, points)?);
     let files = files.into_iter();

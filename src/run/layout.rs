@@ -7,6 +7,9 @@ use super::journal::differences;
 use super::place::read_text;
 use super::{RunError, checksums, curve, journal, plane_file, research_object};
 
+/// What closer looks of a sweep have found, the rows that took the place of others, as JSON.
+pub(super) const LOOKS: &str = "closer_looks.json";
+
 /// What a kind of job leaves in its folder.
 #[derive(Debug, Clone, Copy)]
 pub struct Layout {
@@ -39,6 +42,7 @@ impl Layout {
             "densities.zarr.new",
             "densities.zarr.old",
             "checks.csv",
+            LOOKS,
             "spectra.csv",
             "correlations.csv",
             "figures",

@@ -14,7 +14,7 @@ pub(super) const NAME: &str = "ro-crate-metadata.json";
 
 /// Files and folders of a run that are described, each with what it is and its media type; those that are not there are
 /// left out.
-const PARTS: [(&str, &str, &str); 10] = [
+const PARTS: [(&str, &str, &str); 11] = [
     (
         "run.json",
         "Manifest: program, resolved sweep, seed, how the run ended",
@@ -50,6 +50,11 @@ const PARTS: [(&str, &str, &str); 10] = [
         "checks.csv",
         "Indicators seen on the finer grid that checks located values",
         "text/csv",
+    ),
+    (
+        "closer_looks.json",
+        "P-bifurcations found on finer cells where the sweep's left them in doubt",
+        "application/json",
     ),
     (
         "densities.zarr/",

@@ -116,6 +116,7 @@ fn result(points: Vec<Point>) -> SweepResult {
         points,
         labels: Vec::new(),
         checks: None,
+        looks: Vec::new(),
         interrupted: false,
     }
 }

@@ -156,6 +156,7 @@ pub(crate) fn bistable() -> SweepResult {
             unresolved,
         )],
         checks: None,
+        looks: Vec::new(),
         interrupted: false,
     }
 }
@@ -227,6 +228,7 @@ pub(crate) fn rayleigh((model, parameter): (&str, &str), scale: f64, y: &Axis) -
         points,
         labels,
         checks: None,
+        looks: Vec::new(),
         interrupted: false,
     }
 }

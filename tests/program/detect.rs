@@ -126,6 +126,49 @@ fn unchanged_settings_change_no_byte() {
     }
 }
 
+/// Two wells with noise on both axes, on cells that are too coarse for the tolerance.
+const COARSE: &str = r#"
+[system.equations]
+x = "-(sinh(x) - 1.3 x - theta - (y - 0.3 x)*0.3) + 0.4 (y - 0.3 x)"
+y = "-(y - 0.3 x) - 0.4 (sinh(x) - 1.3 x - theta - (y - 0.3 x)*0.3)"
+[system.noise]
+x = "sqrt(0.4)"
+y = "sqrt(0.4)"
+[system.parameters]
+theta = 0.0
+[sweep]
+parameter = "theta"
+from = -0.6
+to = 0.6
+points = 9
+[cells]
+x = { from = -3.6, to = 3.6, count = 40 }
+y = { from = -4.4, to = 4.4, count = 30 }
+[detect]
+marginals = []
+joint = [["x", "y"]]
+"#;
+
+#[test]
+fn what_closer_looks_have_found_stands_again_with_the_same_settings_alone() {
+    let room = Room::new();
+    room.write("coarse.toml", COARSE);
+    room.solved("sweep coarse.toml --out own --quiet locate.effort=0");
+    room.solved("sweep coarse.toml --out run --quiet");
+    assert!(!room.holds("own/closer_looks.json") && room.holds("run/closer_looks.json"));
+    let table = |run: &str| room.read(&format!("{run}/bifurcations.csv"));
+    assert_ne!(table("own"), table("run"));
+    room.solved("detect run --quiet --out again");
+    assert_same(
+        &without_manifest(&room, "again"),
+        &without_manifest(&room, "run"),
+        "unchanged settings",
+    );
+    room.solved("detect run --quiet locate.effort=0");
+    assert!(!room.holds("run/closer_looks.json"));
+    assert_eq!(table("own"), table("run"));
+}
+
 /// The points without wall-clock times, and without what the solve found: that speaks of the densities watched then.
 fn comparable(room: &Room, run: &str) -> (BTreeMap<String, Vec<u8>>, Table) {
     let mut files = without_manifest(room, run);

@@ -353,6 +353,17 @@ fn potential(seed: u64) -> Option<Case> {
 }
 
 fn solve(case: &Case) -> Vec<Located> {
+    let effort = std::env::var("EFFORT").map_or(1.0, |x| x.parse().unwrap());
+    solve_with(
+        case,
+        &LocateOptions {
+            effort,
+            ..LocateOptions::default()
+        },
+    )
+}
+
+fn solve_with(case: &Case, locate: &LocateOptions) -> Vec<Located> {
     let observable = match case.axes.len() {
         1 => Observable::Marginal(0),
         _ => Observable::Joint(0, 1),
@@ -363,12 +374,11 @@ fn solve(case: &Case) -> Vec<Located> {
     let problem = Problem::new(family, space, vec![observable]).unwrap();
     let source = GeneratorSource::new(&problem, &GeneratorMethodOptions::default()).unwrap();
     let detector = PersistenceDetector::new(DetectOptions::default(), case.points);
-    let locate = LocateOptions::default();
     let found = sweep(
         &source,
         &detector,
         case.points,
-        &locate,
+        locate,
         &Cancellation::new(),
         &mut (),
     )
@@ -459,7 +469,7 @@ fn told(case: &Case, rows: &[Located]) -> String {
     for row in rows {
         writeln!(
             text,
-            "  {:?} {:.7} ± {:.1e} [{:.5}, {:.5}] {} → {}: {} ({})",
+            "  {:?} {:.7} ± {:.1e} [{:.5}, {:.5}] {} → {}: {} ({}) {:?}",
             row.status(),
             row.value,
             row.error,
@@ -468,7 +478,8 @@ fn told(case: &Case, rows: &[Located]) -> String {
             row.before,
             row.after,
             row.change(),
-            row.method()
+            row.method(),
+            row.doubts
         )
         .unwrap();
     }

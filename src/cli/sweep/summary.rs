@@ -139,6 +139,7 @@ fn files(folder: &Path) -> Vec<String> {
         "features.csv",
         "densities.zarr",
         "checks.csv",
+        "closer_looks.json",
         "run.json",
     ]
     .map(str::to_owned)

@@ -83,6 +83,13 @@ impl Observer for Recorder<'_> {
         Ok(self.run.write_progress(&self.manifest)?)
     }
 
+    fn closer_look(&mut self, [lower, upper]: [f64; 2]) {
+        let parameter = self.sweep.problem.family().parameter();
+        self.context.say(&format!(
+            "looking closer from {parameter} = {lower:.6} to {upper:.6}, on finer cells"
+        ));
+    }
+
     fn known_checks(&mut self) -> Vec<CheckedIndicator> {
         std::mem::take(&mut self.checks)
     }

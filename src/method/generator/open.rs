@@ -24,6 +24,10 @@ impl DensitySource for GeneratorSource {
         self.options.segments(self.problem.space(), values)
     }
 
+    fn cells(&self) -> Option<usize> {
+        Some(self.problem.space().n_cells())
+    }
+
     fn finer(&self, want: &Want) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
         Ok(Some(Box::new(self.refined(want)?)))
     }

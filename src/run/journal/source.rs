@@ -108,6 +108,10 @@ impl DensitySource for JournalledSource {
         self.source.segments(values)
     }
 
+    fn cells(&self) -> Option<usize> {
+        self.source.cells()
+    }
+
     fn finer(&self, want: &Want) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
         let finer = self.source.finer(want)?;
         Ok(finer.map(|source| self.beside(source, &format!("finer {want:?}"))))

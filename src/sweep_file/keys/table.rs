@@ -274,7 +274,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("locate.grid_check", Kind::Choice(switch), OfOptions, always!(locate.grid_check),
         "Whether located values are checked on a finer grid (by methods without sampling). With `off` they are `unchecked`, and their errors lack what the cells do."),
     key("locate.effort", Kind::Number(NOT_NEGATIVE), OfOptions, always!(locate.effort),
-        "Work for values that are less certain than wanted after that check: finer cells are asked again, while that costs no more than so many times the solves of the sweep."),
+        "Work for changes that are less certain than wanted after that check: finer cells are asked again, and the stretch around a change in doubt is swept again on them, while that costs no more than so many times the solves of the sweep, or a few seconds where the sweep took less."),
     key("figures.at", Kind::List(&Kind::Number(ANY)), Rule("both ends of the sweep and two points between"), optional!(figures_at),
         "Parameter values at which joint densities and marginals are drawn, inside the sweep."),
     key("figures.formats", Kind::List(&Kind::Choice(Format::words)), OfOptions, always!(figures.formats),

@@ -37,6 +37,7 @@ pub(super) fn check(
         points: Vec::new(),
         labels: Vec::new(),
         checks: Default::default(),
+        looks: Vec::new(),
         interrupted: false,
     };
     let figures = Figures::of_sweep(&nothing, "", &[]);

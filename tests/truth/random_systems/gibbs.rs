@@ -146,6 +146,22 @@ fn what_is_located_under_noise_on_both_axes_holds_the_truth() {
     print_true(&scores);
 }
 
+/// Two peaks last between two changes, whose errors on 60 × 30 cells are larger than wanted.
+#[test]
+fn what_coarse_cells_leave_in_doubt_is_located_on_finer_ones() {
+    let case = gibbs(848_013).unwrap();
+    let score = |effort: f64| {
+        let options = LocateOptions {
+            effort,
+            ..LocateOptions::default()
+        };
+        Score::of(&case, &solve_with(&case, &options))
+    };
+    let [coarse, closer] = [0.0, 1.0].map(score);
+    assert_eq!((coarse.located, coarse.missed), (0, 0));
+    assert_eq!((closer.located, closer.located_right), (2, 2));
+}
+
 #[test]
 #[ignore = "prints the table of docs/location.md"]
 fn gibbs_in_full() {

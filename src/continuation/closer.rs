@@ -1,0 +1,399 @@
+//! Closer looks: where the cells of a sweep leave changes in doubt, the stretch around them is swept again on finer
+//! cells, which say what comes and goes there.
+//!
+//! The stretch ends at values that the sweep has solved. What finer cells show takes the place of its rows where they
+//! count at both ends what the sweep counts there, so that the rows around it still follow from each other, and where
+//! they leave less of it in doubt. Else still finer cells are asked, as often as [`super::LocateOptions::effort`]
+//! allows; what they leave in doubt as well stays a band with its reason.
+
+use super::doubt::MOST_TIMES;
+use super::label::{self, Label, Located};
+use super::live::refined;
+use super::segment::Work;
+use super::span::Span;
+use super::walk::Walk;
+use super::{BifurcationStatus, CellCheck, Doubt, Goal, Point, Want};
+use crate::cancellation::Cancellation;
+use crate::density::{EstimatedDensity, Observable};
+use crate::topology::Signature;
+
+/// What is looked at closer, and with what.
+pub(super) struct Closer<'p, 'a> {
+    work: &'a Work<'a>,
+    span: Span,
+    options: &'p Goal,
+    /// Of the sweep, with densities; ascending.
+    points: Vec<&'p Point>,
+    cancellation: &'a Cancellation,
+    /// Work left, in solves of the sweep.
+    left: f64,
+}
+
+/// Values of a stretch at least.
+const FEWEST: usize = 5;
+
+/// Values that are solved within a stretch beyond its given ones, about.
+const BEYOND: f64 = 10.0;
+
+/// Work that is worth an answer whatever the sweep took, in cells that are solved: those of 200 values on 100 × 100
+/// cells.
+const WORTH: f64 = 2e6;
+
+/// Share of a solve that factors take with 80 × 80 to 100 × 100 cells.
+const FACTORS: f64 = 0.1;
+
+impl<'p, 'a> Closer<'p, 'a> {
+    pub(super) fn new(
+        (work, span): (&'a Work<'a>, Span),
+        options: &'p Goal,
+        points: &'p [Point],
+        cancellation: &'a Cancellation,
+    ) -> Self {
+        let of_sweep = points.len() as f64;
+        let cells = work.source().cells().map_or(f64::INFINITY, |n| n as f64);
+        Self {
+            work,
+            span,
+            options,
+            points: points
+                .iter()
+                .filter(|one| !one.detections.is_empty())
+                .collect(),
+            cancellation,
+            left: options.effort * of_sweep.max(WORTH / cells),
+        }
+    }
+
+    /// The rows of a sweep with those in the place of others that finer cells tell better, and what these looks found.
+    pub(super) fn labels(mut self, labels: Vec<Label>) -> (Vec<Label>, Vec<CloserLook>) {
+        let is_wanted = self.options.grid_check && self.left > 0.0;
+        let is_possible = matches!(
+            self.work.source().subject().cell_check,
+            CellCheck::OnFinerCells { .. }
+        );
+        if !is_wanted || !is_possible || self.points.len() < 2 {
+            return (labels, Vec::new());
+        }
+        let mut looks = Vec::new();
+        let labels = with_rows(labels, |rows| {
+            for times in 1..=MOST_TIMES {
+                let observables = self.work.source().subject().observables.iter();
+                for (place, &observable) in observables.enumerate() {
+                    for stretch in self.stretches(rows, observable) {
+                        let found = self.look((place, observable), stretch, times, rows);
+                        looks.extend(found.filter(|look| look.replace(rows)));
+                    }
+                }
+            }
+        });
+        (labels, looks)
+    }
+
+    /// Sweeps a stretch on cells that are refined so many times, and a wider one where its ends are not what the sweep
+    /// counts there.
+    fn look(
+        &mut self,
+        of: (usize, Observable),
+        mut stretch: [f64; 2],
+        times: u8,
+        rows: &[Located],
+    ) -> Option<CloserLook> {
+        for _ in 0..2 {
+            let found = self.swept(of, stretch, times)?;
+            if let Some(ends) = found.continues(&self.points, of.0, stretch) {
+                return Some(CloserLook {
+                    observable: of.1,
+                    stretch,
+                    ends,
+                    rows: found.rows,
+                });
+            }
+            let wider = self.wider(stretch, self.span.step);
+            if wider == stretch {
+                break;
+            }
+            stretch = self.around_rows(rows, of.1, wider);
+        }
+        None
+    }
+
+    /// What finer cells show in a stretch; `None` where there are none, or no work is left for them.
+    fn swept(
+        &mut self,
+        (_, observable): (usize, Observable),
+        stretch: [f64; 2],
+        times: u8,
+    ) -> Option<Found> {
+        let steps = ((stretch[1] - stretch[0]) / self.span.step).ceil() as usize;
+        let values = super::evenly_spaced((stretch[0], stretch[1]), FEWEST.max(steps + 1));
+        let each = self.cost(times);
+        if (values.len() as f64 + BEYOND) * each > self.left || self.cancellation.is_cancelled() {
+            return None;
+        }
+        let want = Want {
+            errors: true,
+            ..Want::densities(&[observable])
+        };
+        let source = refined(self.work.source(), &want, times).ok()??;
+        self.work.tell_of_closer_look(stretch);
+        let span = Span::over(stretch, values.len());
+        let mut nobody = ();
+        let work = Work::new(
+            (&*source, self.work.detector()),
+            self.cancellation,
+            (&mut nobody, values.len()),
+            self.options.largest_distance,
+            None,
+        );
+        let walk = Walk::along(&work, &values, (span, self.options.clone())).ok()?;
+        let (labels, ..) = walk.labels(self.cancellation, Vec::new());
+        self.left -= walk.points.len() as f64 * each;
+        let is_whole = !work.has_ended() && !self.cancellation.is_cancelled();
+        let rows = labels.into_iter().filter_map(|label| match label {
+            Label::Bifurcation(row) => Some(*row),
+            _ => None,
+        });
+        is_whole.then(|| Found {
+            rows: rows.collect(),
+            points: walk.points,
+        })
+    }
+
+    /// What a value costs on cells that are refined so many times, in values of the sweep.
+    fn cost(&self, times: u8) -> f64 {
+        let subject = self.work.source().subject();
+        let CellCheck::OnFinerCells { ratio } = subject.cell_check else {
+            return f64::INFINITY;
+        };
+        let axes = subject.family.model().axes.len() as i32;
+        let finer = ratio.powi(i32::from(times));
+        // A factorisation by nested dissection takes n^(3(d - 1)) operations with n cells on each of d axes.
+        (1.0 - FACTORS) * finer.powi(axes) + FACTORS * finer.powi(3 * (axes.max(2) - 1))
+    }
+
+    /// Stretches around the rows of an observable that finer cells may tell better, apart from each other.
+    fn stretches(&self, rows: &[Located], observable: Observable) -> Vec<[f64; 2]> {
+        let mut found: Vec<[f64; 2]> = Vec::new();
+        for row in rows
+            .iter()
+            .filter(|row| row.observable == observable && may_be_told(row))
+        {
+            let [lower, upper] = hull(row);
+            let margin = (0.25 * (upper - lower)).max(0.5 * self.span.step);
+            let around = self.wider([lower, upper], margin);
+            let mut around = self.around_rows(rows, observable, around);
+            while let Some(last) = found.pop_if(|last| last[1] >= around[0]) {
+                around = [last[0].min(around[0]), last[1].max(around[1])];
+            }
+            found.push(around);
+        }
+        found
+    }
+
+    /// The solved values that lie outside of a stretch by a margin, or the ends of the sweep.
+    fn wider(&self, [lower, upper]: [f64; 2], margin: f64) -> [f64; 2] {
+        let values = || self.points.iter().map(|point| point.value);
+        let ends = [
+            self.points[0].value,
+            self.points[self.points.len() - 1].value,
+        ];
+        let below = values()
+            .filter(|value| *value <= lower - margin)
+            .next_back();
+        let above = values().find(|value| *value >= upper + margin);
+        [below.unwrap_or(ends[0]), above.unwrap_or(ends[1])]
+    }
+
+    /// A stretch with all of the rows that lie in a part of it.
+    fn around_rows(
+        &self,
+        rows: &[Located],
+        observable: Observable,
+        mut stretch: [f64; 2],
+    ) -> [f64; 2] {
+        for _ in 0..rows.len() {
+            let cut = rows
+                .iter()
+                .filter(|row| row.observable == observable)
+                .find(|row| {
+                    let [lower, upper] = hull(row);
+                    let is_inside = stretch[0] < lower && upper < stretch[1];
+                    let is_at_end = stretch == self.wider([lower, upper], 0.0);
+                    let is_outside = upper < stretch[0] || stretch[1] < lower;
+                    !is_inside && !is_outside && !is_at_end
+                });
+            let Some(cut) = cut else { break };
+            let [lower, upper] = hull(cut);
+            let wider = self.wider([lower.min(stretch[0]), upper.max(stretch[1])], 0.0);
+            if wider == stretch {
+                break;
+            }
+            stretch = wider;
+        }
+        stretch
+    }
+}
+
+/// What finer cells show of one observable in a stretch.
+struct Found {
+    rows: Vec<Located>,
+    points: Vec<Point>,
+}
+
+impl Found {
+    /// What is counted at the ends of the stretch, if that is what the sweep counts there, all in between is seen, and
+    /// its errors are smaller than the sweep's. Where errors are larger, what is not counted may be there all the same.
+    fn continues(
+        &self,
+        points: &[&Point],
+        place: usize,
+        [lower, upper]: [f64; 2],
+    ) -> Option<[Signature; 2]> {
+        let is_whole = |point: &Point| {
+            let mut densities = point.densities.iter();
+            point.report.status.is_resolved()
+                && point.detections.iter().all(|one| one.is_seen)
+                && densities.all(|one| Doubt::of_negative(&one.density).is_none())
+        };
+        let within = points
+            .iter()
+            .filter(|point| (lower..=upper).contains(&point.value));
+        let before = within.filter_map(|point| point.densities.get(place));
+        let own = self
+            .points
+            .iter()
+            .filter_map(|point| point.densities.first());
+        let is_surer = largest_error(own) <= largest_error(before);
+        let counted = [lower, upper].map(|value| {
+            let own = counted(self.points.iter(), value, 0);
+            own.filter(|own| counted(points.iter().copied(), value, place) == Some(*own))
+        });
+        let [below, above] = counted;
+        let ends = [below?, above?];
+        (is_surer && self.points.iter().all(is_whole)).then_some(ends)
+    }
+}
+
+/// What is counted in an observable at a value.
+fn counted<'p>(
+    mut points: impl Iterator<Item = &'p Point>,
+    value: f64,
+    place: usize,
+) -> Option<Signature> {
+    let point = points.find(|point| point.value == value)?;
+    Some(point.detections.get(place)?.signature)
+}
+
+/// What a closer look has found: the rows that take the place of those of the sweep in a stretch of it.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct CloserLook {
+    /// The density that was looked at.
+    pub observable: Observable,
+    /// The ends of the stretch, ascending, in units of the parameter: two values that the sweep has solved.
+    pub stretch: [f64; 2],
+    /// What the sweep counts there.
+    pub ends: [Signature; 2],
+    /// The rows between them, ascending.
+    pub rows: Vec<Located>,
+}
+
+impl CloserLook {
+    /// Takes the place of the rows of the stretch where less is in doubt then; whether it did.
+    fn replace(&self, rows: &mut Vec<Located>) -> bool {
+        let [lower, upper] = self.stretch;
+        let is_there = |row: &Located| {
+            row.observable == self.observable && (lower..=upper).contains(&row.value)
+        };
+        let doubt = |row: &Located| match row.status() {
+            BifurcationStatus::Located => 0.0,
+            _ => hull(row)[1] - hull(row)[0],
+        };
+        let before: f64 = rows.iter().filter(|row| is_there(row)).map(doubt).sum();
+        let after: f64 = self.rows.iter().map(doubt).sum();
+        let is_better = after < before;
+        if is_better {
+            rows.retain(|row| !is_there(row));
+            rows.extend_from_slice(&self.rows);
+            rows.sort_by(|a, b| a.value.total_cmp(&b.value));
+        }
+        is_better
+    }
+}
+
+/// The rows of a sweep with those in the place of others that earlier looks of it have found.
+pub(super) fn with_looks(
+    labels: Vec<Label>,
+    looks: &[CloserLook],
+    (points, observables): (&[Point], &[Observable]),
+) -> Vec<Label> {
+    with_rows(labels, |rows| {
+        for look in looks {
+            let place = observables.iter().position(|one| *one == look.observable);
+            let ends = place.map(|place| {
+                look.stretch
+                    .map(|value| counted(points.iter(), value, place))
+            });
+            if ends == Some(look.ends.map(Some)) {
+                look.replace(rows);
+            }
+        }
+    })
+}
+
+/// Labelled points with their rows changed.
+fn with_rows(labels: Vec<Label>, change: impl FnOnce(&mut Vec<Located>)) -> Vec<Label> {
+    let (mut rows, mut others) = (Vec::new(), Vec::new());
+    for label in labels {
+        match label {
+            Label::Bifurcation(row) => rows.push(*row),
+            other => others.push(other),
+        }
+    }
+    change(&mut rows);
+    let rows = rows
+        .into_iter()
+        .map(|row| Label::Bifurcation(Box::new(row)));
+    label::number(others.into_iter().chain(rows).collect())
+}
+
+/// The largest error of densities, as a share of their mass.
+fn largest_error<'d>(densities: impl Iterator<Item = &'d EstimatedDensity>) -> f64 {
+    let error = |one: &EstimatedDensity| {
+        let volumes = one.density.volumes();
+        let errors = one.standard_error.iter().zip(&volumes);
+        errors.map(|(error, volume)| error * volume).sum()
+    };
+    densities.map(error).fold(0.0, f64::max)
+}
+
+/// Where a row may lie.
+fn hull(row: &Located) -> [f64; 2] {
+    [
+        row.lower.min(row.value - row.error),
+        row.upper.max(row.value + row.error),
+    ]
+}
+
+/// Whether finer cells may tell more of a row.
+fn may_be_told(row: &Located) -> bool {
+    matches!(
+        row.reason(),
+        Some(
+            Doubt::NotOnFinerCells
+                | Doubt::Jump
+                | Doubt::NegativeDensity(_)
+                | Doubt::CoarseCells(..)
+                | Doubt::SolverError(_)
+                | Doubt::WideBracket(_)
+                | Doubt::IndicatorLost
+                | Doubt::TooLow
+                | Doubt::BornBeyond
+                | Doubt::NoIndicator
+                | Doubt::FewCellsApart
+                | Doubt::Flicker
+                | Doubt::Stages
+                | Doubt::DoesNotContinue
+        )
+    )
+}
