@@ -197,9 +197,7 @@ impl<'p, 'a> Closer<'p, 'a> {
             self.points[0].value,
             self.points[self.points.len() - 1].value,
         ];
-        let below = values()
-            .filter(|value| *value <= lower - margin)
-            .next_back();
+        let below = values().rfind(|value| *value <= lower - margin);
         let above = values().find(|value| *value >= upper + margin);
         [below.unwrap_or(ends[0]), above.unwrap_or(ends[1])]
     }

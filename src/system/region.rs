@@ -255,15 +255,14 @@ pub fn regions(model: &Model, given: &[(&str, &str)]) -> Result<Vec<Region>, Vec
         return Err(errors);
     }
     let read = all.into_iter().zip(given).zip(basins);
-    let region =
-        |((level, (_, text)), basin): ((Option<Arc<Quantity>>, &(&str, &str)), Option<_>)| {
-            Some(Region {
-                text: (*text).to_owned(),
-                level: level?,
-                basin: basin.and_then(Result::ok),
-            })
-        };
-    Ok(read.filter_map(region).collect())
+    let read = read.filter_map(|((level, (_, text)), basin)| {
+        Some(Region {
+            text: (*text).to_owned(),
+            level: level?,
+            basin: basin.and_then(Result::ok),
+        })
+    });
+    Ok(read.collect())
 }
 
 #[cfg(test)]

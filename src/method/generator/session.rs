@@ -37,6 +37,9 @@ pub(super) const ROUGH: f64 = 1e-2;
 /// that was worked out for the first is that of the second, to [`ROUGH`].
 const NEAR: f64 = 1e-3;
 
+/// The unknowns of a steady state, and by how much those of another discretisation differ.
+type Known<'a> = (&'a [f64], &'a [f64]);
+
 /// Owns the factorisation and what the solved points say of the next one.
 pub(super) struct GeneratorSession {
     pub(super) source: GeneratorSource,
@@ -133,7 +136,7 @@ impl GeneratorSession {
         report: &mut SolveReport,
         value: f64,
         system: &Arc<dyn System>,
-        (known, watched): (Option<(&[f64], &[f64])>, &[EstimatedDensity]),
+        (known, watched): (Option<Known<'_>>, &[EstimatedDensity]),
     ) -> Result<(), MethodError> {
         if self.source.checks {
             return Ok(());
