@@ -257,16 +257,15 @@ pub fn regions(model: &Model, given: &[(&str, &str)]) -> Result<Vec<Region>, Vec
     if !errors.is_empty() {
         return Err(errors);
     }
-    let read = all.into_iter().zip(given).zip(basins);
-    let region =
-        |((level, (_, text)), basin): ((Option<Arc<Quantity>>, &(&str, &str)), Option<_>)| {
-            Some(Region {
-                text: (*text).to_owned(),
-                level: level?,
-                basin: basin.and_then(Result::ok),
-            })
-        };
-    Ok(read.filter_map(region).collect())
+    let mut read = Vec::new();
+    for ((level, (_, text)), basin) in all.into_iter().zip(given).zip(basins) {
+        read.extend(level.map(|level| Region {
+            text: (*text).to_owned(),
+            level,
+            basin: basin.and_then(Result::ok),
+        }));
+    }
+    Ok(read)
 }
 
 /// A piece of a level that was copied: where it stands there, and where in the text.

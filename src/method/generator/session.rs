@@ -76,6 +76,9 @@ pub(super) struct PointSolve {
     along: Option<(Vec<f64>, bool)>,
 }
 
+/// Unknowns of a steady state, and by how much those of another discretisation differ.
+type Unknowns<'a> = (&'a [f64], &'a [f64]);
+
 /// A solution, and the trail that leads on from it where there is one.
 type Judged = (Solution<'static>, Option<Trail>);
 
@@ -148,7 +151,7 @@ impl GeneratorSession {
         report: &mut SolveReport,
         value: f64,
         system: &Arc<dyn System>,
-        (known, watched): (Option<(&[f64], &[f64])>, &[EstimatedDensity]),
+        (known, watched): (Option<Unknowns<'_>>, &[EstimatedDensity]),
     ) -> Result<(), MethodError> {
         if self.source.checks {
             return Ok(());

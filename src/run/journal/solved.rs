@@ -30,7 +30,7 @@ enum Place {
     /// In the record of this key.
     At(Key),
     /// Here, since a shard has solved it.
-    Here(Kept),
+    Here(Box<Kept>),
 }
 
 fn described(family: &Family, observable: Observable) -> Described {
@@ -70,7 +70,7 @@ impl Journal {
             return Ok(());
         }
         let densities = of_densities(family, &point.densities);
-        let place = Place::Here(Kept::of_point(point));
+        let place = Place::Here(Box::new(Kept::of_point(point)));
         self.write(
             Key::of_point(point.value),
             &PointRecord { place, densities },
@@ -100,7 +100,7 @@ impl Journal {
         let broken = || RunError::Journal { path: self.path() };
         let kept = match record.place {
             Place::At(key) => self.get(key)?.ok_or_else(broken)?,
-            Place::Here(kept) => kept,
+            Place::Here(kept) => *kept,
         };
         if !kept.is_sound() || kept.densities().len() != record.densities.len() {
             return Err(broken());
