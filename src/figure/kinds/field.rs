@@ -1,6 +1,6 @@
 //! Fields of passages over the state where they start (`field_exit_mean_time`, `field_exit_committor`): over two axes a
-//! map at each chosen value and a sheet of all, with contours and the border of the target; over one axis curves with the bands of their
-//! errors.
+//! map at each chosen value and a sheet of all, with contours and the border of the target; over one axis curves with
+//! the bands of their errors.
 
 use super::spectrum::{Chart, Line};
 use super::{Drawn, Kind, Sketch, Sweep};
@@ -13,7 +13,7 @@ use crate::figure::canvas::legend::{Legend, Swatch};
 use crate::figure::canvas::look::{Look, on_heat};
 use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape};
 use crate::figure::canvas::style::{Colour, INK, MARGIN, Stroke, TEXT};
-use crate::figure::parts::joint_map::write_above;
+use crate::figure::parts::joint_map::{with_letter, write_above};
 use crate::figure::parts::view::{middles, resolution};
 use crate::figure::parts::{caption, names, table};
 use crate::figure::print::{Figure, Print};
@@ -237,7 +237,8 @@ fn draw_maps(
         .iter()
         .filter_map(|point| Some((point.value, FieldMap::new(of_point(point, asked)?)?)));
     let known: Vec<(f64, FieldMap<'_>)> = known.collect();
-    let maps = &known[print.share(known.len())];
+    let share = print.share(known.len());
+    let maps = &known[share.clone()];
     let largest = known
         .iter()
         .fold(0.0, |most: f64, (_, map)| most.max(map.largest));
@@ -271,10 +272,11 @@ fn draw_maps(
     let bar = ColourBar::new(look, largest, whole.1, title(asked));
     let width = left + whole.0 + bar.width() + MARGIN;
     let heading = Heading::new(look, print.title, width);
-    let entries = vec![(
-        Swatch::Curve(border(INK)),
-        "border of the target".to_owned(),
-    )];
+    let bordered = match asked.kind {
+        FieldKind::MeanTime => "border of the target",
+        FieldKind::Committor => "borders of the regions",
+    };
+    let entries = vec![(Swatch::Curve(border(INK)), bordered.to_owned())];
     let legend = Legend::new(look, entries, width - 2.0 * MARGIN);
     let all = Rectangle::new((left, heading.height() + ColourBar::above()), whole);
     let below = all.bottom() + Scale::below();
@@ -283,7 +285,12 @@ fn draw_maps(
     let first = Rectangle::new((all.left, all.top), side);
     for (number, (value, map)) in maps.iter().enumerate() {
         let place = first.tile(number, columns, step);
-        write_above(&page, place, names::at(family, *value));
+        let line = names::at(family, *value);
+        let line = match known.len() {
+            1 => line,
+            _ => with_letter(look, share.start + number, line),
+        };
+        write_above(&page, place, line);
         let panel = page.panel(place, x, y);
         let picture = map.picture(look, place, largest);
         panel.draw(&[(x.0, y.0), (x.1, y.1)], Shape::Image(picture));
