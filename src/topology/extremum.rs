@@ -212,7 +212,7 @@ fn beside(axis: &Axis, values: &[f64], kinks: &[Break], kink: &Break) -> Option<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::density::{Density, Kink, Observable, Variants};
+    use crate::density::{Kink, Variants};
     use crate::space::Grading;
     use crate::topology::analytic_tests::averages;
 
