@@ -5,7 +5,7 @@ macro_rules! words {
     ($of:ident, $seen:vis $name:ident: $($variant:ident: $word:literal),+ $(,)?) => {
         impl $of {
             /// All of them, in the order of files and tables.
-            pub const ALL: [Self; [$($word),+].len()] = [$(Self::$variant),+];
+            $seen const ALL: [Self; [$($word),+].len()] = [$(Self::$variant),+];
 
             /// The word used in files and tables.
             $seen const fn $name(self) -> &'static str {

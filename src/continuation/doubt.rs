@@ -23,24 +23,9 @@ pub enum BifurcationStatus {
     Unchecked,
 }
 
-impl BifurcationStatus {
-    /// All of them.
-    pub const ALL: [Self; 4] = [
-        Self::Located,
-        Self::Unresolved,
-        Self::Unconfirmed,
-        Self::Unchecked,
-    ];
-
-    /// The word used in tables.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Located => "located",
-            Self::Unresolved => "unresolved",
-            Self::Unconfirmed => "unconfirmed",
-            Self::Unchecked => "unchecked",
-        }
-    }
+words! {
+    BifurcationStatus, pub word:
+    Located: "located", Unresolved: "unresolved", Unconfirmed: "unconfirmed", Unchecked: "unchecked",
 }
 
 /// What a located value is checked by.

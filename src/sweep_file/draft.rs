@@ -118,22 +118,7 @@ pub(super) enum EndKind {
     Open,
 }
 
-impl EndKind {
-    /// The word in files.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Reflecting => "reflecting",
-            Self::Absorbing => "absorbing",
-            Self::Open => "open",
-        }
-    }
-
-    /// The end of that word.
-    pub(super) fn named(word: &str) -> Option<Self> {
-        let all = [Self::Reflecting, Self::Absorbing, Self::Open];
-        all.into_iter().find(|kind| kind.name() == word)
-    }
-}
+words! { EndKind, pub(super) name: Reflecting: "reflecting", Absorbing: "absorbing", Open: "open" }
 
 /// Equations as the file has them, each list in the order given.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -211,18 +196,7 @@ pub(super) enum ExponentKind {
     Largest,
 }
 
-impl ExponentKind {
-    /// All of them.
-    pub(super) const ALL: [Self; 2] = [Self::FixedPoint, Self::Largest];
-
-    /// Name used in files.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::FixedPoint => "fixed-point",
-            Self::Largest => "largest",
-        }
-    }
-}
+words! { ExponentKind, pub(super) name: FixedPoint: "fixed-point", Largest: "largest" }
 
 /// What the file says of fluctuations.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -21,16 +21,13 @@ pub(super) enum Font {
     SerifBold,
 }
 
-impl Font {
-    pub(super) const ALL: [Self; 6] = [
-        Self::Sans,
-        Self::SansOblique,
-        Self::SansBold,
-        Self::Serif,
-        Self::SerifItalic,
-        Self::SerifBold,
-    ];
+words! {
+    Font, pub(super) name:
+    Sans: "DejaVuSans", SansOblique: "DejaVuSans-Oblique", SansBold: "DejaVuSans-Bold",
+    Serif: "DejaVuSerif", SerifItalic: "DejaVuSerif-Italic", SerifBold: "DejaVuSerif-Bold",
+}
 
+impl Font {
     fn new(typeface: Typeface, bold: bool, slanted: bool) -> Self {
         match (typeface, bold, slanted) {
             (Typeface::Sans, true, _) => Self::SansBold,
@@ -48,18 +45,6 @@ impl Font {
             Self::Sans | Self::Serif => [Self::Sans, Self::Serif],
             Self::SansOblique | Self::SerifItalic => [Self::SansOblique, Self::Sans],
             Self::SansBold | Self::SerifBold => [Self::SansBold, Self::Sans],
-        }
-    }
-
-    /// Its name in a PDF.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Sans => "DejaVuSans",
-            Self::SansOblique => "DejaVuSans-Oblique",
-            Self::SansBold => "DejaVuSans-Bold",
-            Self::Serif => "DejaVuSerif",
-            Self::SerifItalic => "DejaVuSerif-Italic",
-            Self::SerifBold => "DejaVuSerif-Bold",
         }
     }
 

@@ -66,7 +66,10 @@ pub(super) const PERIODIC: &str = "periodic";
 
 /// What happens at both ends of an axis, where that is said in words.
 pub(super) fn ends_of(plain: &Plain) -> Option<[EndKind; 2]> {
-    let kind = |plain: &Plain| EndKind::named(plain.text()?);
+    let kind = |plain: &Plain| {
+        let mut all = EndKind::ALL.into_iter();
+        all.find(|kind| plain.text() == Some(kind.name()))
+    };
     match plain.items() {
         Some([lower, upper]) => Some([kind(lower)?, kind(upper)?]),
         Some(_) => None,

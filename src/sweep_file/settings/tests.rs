@@ -43,6 +43,29 @@ const COLOURED: [&str; 2] = [
     "system.parameters.tau=0.5",
 ];
 
+const EQUATIONS: &str = r#"
+[system]
+title = "by hand"
+[system.equations]
+y = "-kappa force"
+[system.noise]
+y = "sqrt(2 D) y"
+interpretation = "ito"
+[system.define]
+force = "y + y^3"
+[system.bounds]
+y = ["-9", 9]
+[system.parameters]
+kappa = 1
+[sweep]
+parameter = "D"
+from = 0.1
+to = 0.2
+points = 3
+[cells]
+y = { count = 10 }
+"#;
+
 /// A phase-locked loop, its angle in turns.
 const ANGLE: &str = r#"
 [system.equations]

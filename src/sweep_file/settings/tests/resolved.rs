@@ -49,29 +49,6 @@ fn the_resolved_file_gives_the_same_sweep() {
     }
 }
 
-pub(super) const EQUATIONS: &str = r#"
-[system]
-title = "by hand"
-[system.equations]
-y = "-kappa force"
-[system.noise]
-y = "sqrt(2 D) y"
-interpretation = "ito"
-[system.define]
-force = "y + y^3"
-[system.bounds]
-y = ["-9", 9]
-[system.parameters]
-kappa = 1
-[sweep]
-parameter = "D"
-from = 0.1
-to = 0.2
-points = 3
-[cells]
-y = { count = 10 }
-"#;
-
 #[test]
 fn the_resolved_file_holds_every_key() {
     // Between them the resolved files of all methods, and of equations; `range` has become numbers.

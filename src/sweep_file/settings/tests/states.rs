@@ -1,6 +1,5 @@
 //! Settings of internal states and of noise with memory: axes of modes, and where they cannot be.
 
-use super::resolved::EQUATIONS;
 use super::*;
 
 #[test]
