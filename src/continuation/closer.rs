@@ -10,7 +10,7 @@ use super::doubt::MOST_TIMES;
 use super::label::{self, Label, Located};
 use super::live::refined;
 use super::segment::Work;
-use super::span::Span;
+use super::span::{Span, evenly_spaced};
 use super::walk::Walk;
 use super::{BifurcationStatus, CellCheck, Doubt, Goal, Point, Want};
 use crate::cancellation::Cancellation;
@@ -125,7 +125,7 @@ impl<'p, 'a> Closer<'p, 'a> {
         times: u8,
     ) -> Option<Found> {
         let steps = ((stretch[1] - stretch[0]) / self.span.step).ceil() as usize;
-        let values = super::evenly_spaced((stretch[0], stretch[1]), FEWEST.max(steps + 1));
+        let values = evenly_spaced((stretch[0], stretch[1]), FEWEST.max(steps + 1));
         let each = self.cost(times);
         if (values.len() as f64 + BEYOND) * each > self.left || self.cancellation.is_cancelled() {
             return None;

@@ -90,9 +90,10 @@ pub use shard::Shard;
 pub use source::{
     CellCheck, DensitySource, Sensitivity, Session, Solution, SourceError, Subject, Want,
 };
+pub use span::evenly_spaced;
 pub use state_field::StateField;
+pub use sweep::sweep;
 pub(crate) use sweep::sweep_shard;
-pub use sweep::{evenly_spaced, sweep};
 
 #[cfg(test)]
 mod location_tests;

@@ -3,26 +3,11 @@
 
 use super::closer::Closer;
 use super::segment::Work;
-use super::span::Span;
+use super::span::{Span, evenly_spaced};
 use super::walk::Walk;
 use super::{DensitySource, LocateOptions, Observer, Shard, SweepError, SweepResult};
 use crate::cancellation::Cancellation;
 use crate::topology::Detector;
-
-/// Evenly spaced values (at least 2), both ends exact. Weights are whole numbers and values are rounded to 15 digits,
-/// so that round values between (0, or -0.01, between -0.02 and 0.01) come out as people write them.
-pub fn evenly_spaced((from, to): (f64, f64), points: usize) -> Vec<f64> {
-    let steps = points.max(2) - 1;
-    let value = |index: usize| match index {
-        0 => from,
-        index if index == steps => to,
-        index => {
-            let value = (from * (steps - index) as f64 + to * index as f64) / steps as f64;
-            format!("{value:.14e}").parse().unwrap_or(value)
-        }
-    };
-    (0..=steps).map(value).collect()
-}
 
 /// Sweeps a source along its path from end to end, with `points` evenly spaced values (at least 2).
 ///

@@ -116,7 +116,8 @@ impl Family {
         formulas.linearised(values.as_slice(), state)
     }
 
-    /// Why there is no largest Lyapunov exponent along the density at a coordinate of the path; `None` where there is one.
+    /// Why there is no largest Lyapunov exponent along the density at a coordinate of the path; `None` where there is
+    /// one.
     pub(crate) fn tangent_fault(&self, coordinate: f64) -> Option<TangentFault> {
         let formulas = self.model.formulas();
         let Some(formulas) = formulas.filter(|_| self.model.noise_kind() == NoiseKind::White)

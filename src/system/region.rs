@@ -4,7 +4,8 @@
 //! `one and other` the larger of two levels, of `one or other` the smaller one, of `not one` the level with the other
 //! sign. So the border has a place on every line, to the last digit, and a region is a formula like any other.
 //!
-//! A region may also be found: the basin of a peak of a density, `peak 2 of x`, whose ends are known where the density is.
+//! A region may also be found: the basin of a peak of a density, `peak 2 of x`, whose ends are known where the density
+//! is.
 
 mod level;
 

@@ -24,7 +24,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("continuation", &["cancellation", "system", "exponent", "space", "density", "topology", "bytes"]),
     ("method", &[
         "cancellation", "system", "exponent", "space", "sampling", "monte_carlo", "generator", "stationary", "passage",
-        "spectrum", "density", "continuation", "bytes"
+        "spectrum", "density", "topology", "continuation", "bytes"
     ]),
     ("compare", &[
         "cancellation", "system", "space", "sampling", "monte_carlo", "density", "continuation", "method"
