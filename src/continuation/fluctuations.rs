@@ -1,7 +1,7 @@
 //! How what is watched fluctuates in a steady state: spectra over the frequency, correlations over the lag.
 
 /// The spectrum of one observable, or of two, at a value of the parameter. Frequencies and lags are those that the
-/// family asks for ([`Family::spectrum`](crate::system::Family::spectrum)).
+/// family asks for ([`Questions::spectrum`](crate::system::Questions::spectrum)).
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Fluctuations {
