@@ -8,7 +8,7 @@
 
 use super::doubt::MOST_TIMES;
 use super::label::{self, Label, Located};
-use super::live::refined;
+use super::live::{FACTORS, refined, work_of_factors};
 use super::segment::Work;
 use super::span::{Span, evenly_spaced};
 use super::walk::Walk;
@@ -38,9 +38,6 @@ const BEYOND: f64 = 10.0;
 /// Work that is worth an answer whatever the sweep took, in cells that are solved: those of 200 values on 100 × 100
 /// cells.
 const WORTH: f64 = 2e6;
-
-/// Share of a solve that factors take with 80 × 80 to 100 × 100 cells.
-const FACTORS: f64 = 0.1;
 
 impl<'p, 'a> Closer<'p, 'a> {
     pub(super) fn new(
@@ -165,10 +162,9 @@ impl<'p, 'a> Closer<'p, 'a> {
         let CellCheck::OnFinerCells { ratio } = subject.cell_check else {
             return f64::INFINITY;
         };
-        let axes = subject.family.model().axes.len() as i32;
+        let axes = subject.family.model().axes.len();
         let finer = ratio.powi(i32::from(times));
-        // A factorisation by nested dissection takes n^(3(d - 1)) operations with n cells on each of d axes.
-        (1.0 - FACTORS) * finer.powi(axes) + FACTORS * finer.powi(3 * (axes.max(2) - 1))
+        (1.0 - FACTORS) * finer.powi(axes as i32) + work_of_factors(finer, axes)
     }
 
     /// Stretches around the rows of an observable that finer cells may tell better, apart from each other.
@@ -176,7 +172,7 @@ impl<'p, 'a> Closer<'p, 'a> {
         let mut found: Vec<[f64; 2]> = Vec::new();
         for row in rows
             .iter()
-            .filter(|row| row.observable == observable && may_be_told(row))
+            .filter(|row| row.observable == observable && is_of_cells(row))
         {
             let [lower, upper] = hull(row);
             let margin = (0.25 * (upper - lower)).max(0.5 * self.span.step);
@@ -374,24 +370,6 @@ fn hull(row: &Located) -> [f64; 2] {
 }
 
 /// Whether finer cells may tell more of a row.
-fn may_be_told(row: &Located) -> bool {
-    matches!(
-        row.reason(),
-        Some(
-            Doubt::NotOnFinerCells
-                | Doubt::Jump
-                | Doubt::NegativeDensity(_)
-                | Doubt::CoarseCells(..)
-                | Doubt::SolverError(_)
-                | Doubt::WideBracket(_)
-                | Doubt::IndicatorLost
-                | Doubt::TooLow
-                | Doubt::BornBeyond
-                | Doubt::NoIndicator
-                | Doubt::FewCellsApart
-                | Doubt::Flicker
-                | Doubt::Stages
-                | Doubt::DoesNotContinue
-        )
-    )
+fn is_of_cells(row: &Located) -> bool {
+    row.reason().is_some_and(Doubt::is_of_cells)
 }

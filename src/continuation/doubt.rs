@@ -149,6 +149,43 @@ impl Doubt {
         }
     }
 
+    /// Whether finer cells may remove it: not where samples, modes, what leaves the range, or the equations themselves
+    /// leave it, nor where no check was wanted.
+    pub(super) fn is_of_cells(&self) -> bool {
+        match self {
+            Self::NotOnFinerCells
+            | Self::Jump
+            | Self::NegativeDensity(_)
+            | Self::CoarseCells(..)
+            | Self::SolverError(_)
+            | Self::WideBracket(_)
+            | Self::IndicatorLost
+            | Self::TooLow
+            | Self::BornBeyond
+            | Self::NoIndicator
+            | Self::FewCellsApart
+            | Self::Flicker
+            | Self::Stages
+            | Self::DoesNotContinue => true,
+            Self::CheckFailed(..)
+            | Self::NotBetweenClosedEnds
+            | Self::OutwardDrift
+            | Self::Unsound(..)
+            | Self::FewModes(_)
+            | Self::JumpInsideCells(..)
+            | Self::Leak(..)
+            | Self::FewSamples(_)
+            | Self::UnevenFits(_)
+            | Self::Extrapolated(_)
+            | Self::NumericalDiffusion
+            | Self::GridCheckOff
+            | Self::CheckMissing
+            | Self::AtRest(_)
+            | Self::NoCurve
+            | Self::Stored(_) => false,
+        }
+    }
+
     /// What a finding says against the shape of a density wherever it is read.
     pub(super) fn of_finding(finding: &Finding) -> Option<Self> {
         match *finding {

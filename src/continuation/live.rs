@@ -122,9 +122,10 @@ impl<'a> Live<'a> {
         };
         match (by, subject.cell_check) {
             (CheckedBy::FinerCells(times @ 2..), CellCheck::OnFinerCells { ratio }) => {
-                // A factorisation by nested dissection takes n^(3(d - 1)) operations with n cells on each of d axes.
-                let axes = subject.family.model().axes.len().max(2) as i32;
-                FACTORS * ratio.powi(3 * (axes - 1) * i32::from(times))
+                work_of_factors(
+                    ratio.powi(i32::from(times)),
+                    subject.family.model().axes.len(),
+                )
             }
             _ => 0.0,
         }
@@ -149,7 +150,13 @@ pub(super) fn refined(
 
 /// What factors take of a value of a sweep, with detection and all that is written: a tenth, measured with 80 × 80 to
 /// 100 × 100 cells.
-const FACTORS: f64 = 0.1;
+pub(super) const FACTORS: f64 = 0.1;
+
+/// What factors take with so many times as many cells an axis, in values of a sweep: a factorisation by nested
+/// dissection takes n^(3(d - 1)) operations with n cells on each of d axes.
+pub(super) fn work_of_factors(finer: f64, axes: usize) -> f64 {
+    FACTORS * finer.powi(3 * (axes.max(2) as i32 - 1))
+}
 
 /// Solves that a value takes at least: one at the zero, and one that shows the change of sign.
 const SOLVES: f64 = 2.0;

@@ -23,6 +23,7 @@ use super::{GeneratorError, GeneratorOptions};
 use crate::MAX_DIMENSION;
 use crate::space::CellSpace;
 use crate::system::{BoundQuantity, LANES, Lanes, System};
+pub(crate) use border::lagrange;
 use border::{Beyond, Border, GridLine};
 
 /// The generator on the cells outside of a region.

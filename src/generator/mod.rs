@@ -44,8 +44,7 @@ mod shared_noise;
 mod smooth;
 mod spectral_viscosity;
 
-pub(crate) use absorbing::levels;
-pub(crate) use absorbing::{AbsorbingGenerator, Closure, assemble_absorbing};
+pub(crate) use absorbing::{AbsorbingGenerator, Closure, assemble_absorbing, lagrange, levels};
 pub use assemble::assemble;
 pub(crate) use assemble::assemble_damped;
 pub use derivative::assemble_derivative;

@@ -12,7 +12,7 @@ use crate::continuation::{
 use crate::figure::{Figure, Figures};
 use crate::run::{
     Ending, Gathered, JobFolder, JournalledSource, Layout, Manifest, PhaseSeconds, RunError,
-    RunFolder, StoredRun, sweep_files, warnings_of_points,
+    RunFolder, StoredRun, looks_file, sweep_files, warnings_of_points,
 };
 use crate::sweep_file::{Report, Sweep};
 use recorder::Recorder;
@@ -242,7 +242,8 @@ impl Job for SweepJob<'_> {
     }
 
     fn files(&self, found: &SweepResult, _: f64) -> Result<Vec<(String, String)>, RunError> {
-        sweep_files(found)
+        let looks = looks_file(&found.looks, &self.sweep.to_toml())?;
+        Ok(sweep_files(found)?.into_iter().chain(looks).collect())
     }
 
     fn figures(&self, found: &SweepResult, context: &Context<'_>) -> Vec<Figure> {
@@ -260,8 +261,8 @@ impl Job for SweepJob<'_> {
         folder.check()?;
         let has_time = self.has_time(found);
         match &mut self.begun {
-            Some((run, _)) if has_time => run.finish(found),
-            Some((run, _)) => run.break_off(found),
+            Some((run, _)) if has_time => run.finish(found, &self.sweep.to_toml()),
+            Some((run, _)) => run.break_off(found, &self.sweep.to_toml()),
             None => Ok(()),
         }
     }

@@ -4,6 +4,7 @@
 //! nearest.
 
 use super::spread::crossing;
+use crate::generator::lagrange;
 use crate::space::CellSpace;
 use crate::system::{BoundQuantity, System};
 
@@ -95,20 +96,6 @@ fn border_between(
     let of = |share: f64| level.at(&at(share));
     let share = crossing(&of, [(0.0, of(0.0)), (1.0, of(1.0))]);
     (at(share), share)
-}
-
-/// Weights of values at some places in the polynomial through them, at another place.
-fn lagrange(places: &[f64], at: f64) -> Vec<f64> {
-    let weight = |index: usize| {
-        let others = places
-            .iter()
-            .enumerate()
-            .filter(|(other, _)| *other != index);
-        others.fold(1.0, |product, (_, place)| {
-            product * (at - place) / (places[index] - place)
-        })
-    };
-    (0..places.len()).map(weight).collect()
 }
 
 /// A field at a state beside a border, through what it is on the border and what `field` says of it farther inside,

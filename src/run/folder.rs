@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::atomic::{sync_all, write_atomically, write_durably};
 use super::growing::GrowingTable;
-use super::layout::LOOKS;
+use super::looks::looks_file;
 use super::spectra::fluctuation_files;
 use super::store::write_store;
 use super::{
@@ -131,14 +131,21 @@ impl RunFolder {
         self.added
     }
 
-    /// Writes the tables of a sweep that ends at once. Its densities stay in the journal, as a kill leaves them.
+    /// Writes the tables of a sweep that ends at once; `sweep_file` is the complete file that was run. Its densities stay in the journal, as a kill leaves them.
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
-    pub(crate) fn break_off(&mut self, result: &SweepResult) -> Result<(), RunError> {
+    pub(crate) fn break_off(
+        &mut self,
+        result: &SweepResult,
+        sweep_file: &str,
+    ) -> Result<(), RunError> {
         self.points.close();
         self.features.close();
-        for (name, text) in sweep_files(result)? {
+        for (name, text) in sweep_files(result)?
+            .into_iter()
+            .chain(looks_file(&result.looks, sweep_file)?)
+        {
             write_atomically(&self.path.join(name), text.as_bytes())?;
         }
         Ok(())
@@ -149,8 +156,12 @@ impl RunFolder {
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
-    pub(crate) fn finish(&mut self, result: &SweepResult) -> Result<(), RunError> {
-        self.break_off(result)?;
+    pub(crate) fn finish(
+        &mut self,
+        result: &SweepResult,
+        sweep_file: &str,
+    ) -> Result<(), RunError> {
+        self.break_off(result, sweep_file)?;
         self.settling = Some(Settling::begin(write_densities(&self.path, result)?)).into();
         Ok(())
     }
@@ -181,7 +192,6 @@ pub(crate) fn sweep_files(result: &SweepResult) -> Result<Vec<(String, String)>,
         points,
         labels,
         checks,
-        looks,
         ..
     } = result;
     let family = &subject.family;
@@ -195,9 +205,6 @@ pub(crate) fn sweep_files(result: &SweepResult) -> Result<Vec<(String, String)>,
     ];
     if let Some(checks) = checks {
         files.push(("checks.csv", checks::checks_csv(subject, checks)?));
-    }
-    if !looks.is_empty() {
-        files.push((LOOKS, serde_json::to_string_pretty(looks)? + "\n"));
     }
     files.extend(fluctuation_files(family, points)?);
     let files = files.into_iter();

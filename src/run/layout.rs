@@ -5,10 +5,7 @@ use std::path::Path;
 use super::archive::Entries;
 use super::journal::differences;
 use super::place::read_text;
-use super::{RunError, checksums, curve, journal, plane_file, research_object};
-
-/// What closer looks of a sweep have found, the rows that took the place of others, as JSON.
-pub(super) const LOOKS: &str = "closer_looks.json";
+use super::{RunError, checksums, curve, journal, looks, plane_file, research_object};
 
 /// What a kind of job leaves in its folder.
 #[derive(Debug, Clone, Copy)]
@@ -42,7 +39,7 @@ impl Layout {
             "densities.zarr.new",
             "densities.zarr.old",
             "checks.csv",
-            LOOKS,
+            looks::NAME,
             "spectra.csv",
             "correlations.csv",
             "figures",

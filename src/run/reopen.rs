@@ -1,5 +1,6 @@
 //! A stored run and its sweep, joined again: the sweep file that was run, and what is found in its densities.
 
+use super::looks::read_looks;
 use super::{Ending, RunError, StoredRun};
 use crate::continuation::{SweepResult, detect_again};
 use crate::sweep_file::{Sweep, SweepFile};
@@ -26,24 +27,11 @@ impl StoredRun {
         let (subject, cells) = (problem.subject(), (problem.space(), problem.bins()));
         let points = self.points(subject, cells, &sweep.methods())?;
         let checks = self.checks(subject)?;
-        let looks = if finds_alike(self.resolved(), &sweep.to_toml()) {
-            self.looks()?
-        } else {
-            Vec::new()
-        };
+        let looks = read_looks(self.path(), &sweep.to_toml())?;
         let swept = (subject.clone(), sweep.settings.points);
         let (detector, locate) = (sweep.detector(), &sweep.settings.locate);
         let mut result = detect_again(swept, &detector, points, (checks, looks), locate);
         result.interrupted = self.ending() != Ending::Complete;
         Ok(result)
     }
-}
-
-/// Whether two complete sweep files ask for the same to be detected and located, by the same settings.
-fn finds_alike(one: &str, other: &str) -> bool {
-    let tables = [one, other].map(|text| {
-        let all = toml::from_str::<toml::Table>(text).unwrap_or_default();
-        ["detect", "locate"].map(|name| all.get(name).cloned())
-    });
-    tables[0] == tables[1]
 }

@@ -6,13 +6,13 @@ use super::atomic::write_atomically;
 use super::staging::Staging;
 use super::tree::link_tree;
 use super::{
-    Ending, Layout, Manifest, RunError, RunFolder, StoredRun, checksums, folder, journal,
+    Ending, Layout, Manifest, RunError, RunFolder, StoredRun, checksums, folder, journal, looks,
     research_object, sweep_files,
 };
 use crate::continuation::SweepResult;
 
 /// What a sweep solved for: it stays when the run is detected again.
-const SOLVED: [&str; 2] = ["densities.zarr", "checks.csv"];
+const SOLVED: [&str; 3] = ["densities.zarr", "checks.csv", looks::NAME];
 
 /// The new version in the making. Dropped before it is in place, it leaves everything as it was.
 #[derive(Debug)]

@@ -6,16 +6,15 @@ use rayon::prelude::*;
 use serde::Deserialize;
 
 use super::checks::read_checks;
-use super::layout::LOOKS;
 use super::manifest::{Typed, hash};
 use super::place::{FIGURES, folder_in, read};
 use super::point_densities::PointDensities;
 use super::points_table::read_points;
 use super::sealing::seal_after_kill;
 use super::spectra::{CORRELATIONS, SPECTRA, read_fluctuations};
-use super::{Checked, Ending, Layout, PhaseSeconds, RunError, checksums, journal};
+use super::{Checked, Ending, Layout, PhaseSeconds, RunError, checksums, journal, looks};
 use crate::continuation::measure::{MEAN, VELOCITY};
-use crate::continuation::{CheckedIndicator, CloserLook, Point, Shard, Subject};
+use crate::continuation::{CheckedIndicator, Point, Shard, Subject};
 use crate::space::{Axis, CellSpace};
 use crate::sweep_file::SweepText;
 
@@ -217,22 +216,6 @@ impl StoredRun {
         there.then(|| read_checks(&path, subject)).transpose()
     }
 
-    /// What closer looks of the sweep have found; nothing where it made none.
-    ///
-    /// # Errors
-    /// [`RunError::Read`], and [`RunError::Looks`] for a file that is none of this program.
-    pub(super) fn looks(&self) -> Result<Vec<CloserLook>, RunError> {
-        let path = self.path.join(LOOKS);
-        if !path.is_file() {
-            return Ok(Vec::new());
-        }
-        let bytes = read(&path).map_err(|source| RunError::Read {
-            path: path.clone(),
-            source,
-        })?;
-        serde_json::from_slice(&bytes).map_err(|source| RunError::Looks { path, source })
-    }
-
     /// All points in the order of the table, with the densities of the observables of `subject` on these cells (and
     /// bins of quantities), bit for bit as they were solved; detections are empty. A run that was killed may hold a
     /// density whose row was not written: it is left out.
@@ -286,7 +269,7 @@ impl StoredRun {
             "run.json",
             "points.csv",
             "checks.csv",
-            LOOKS,
+            looks::NAME,
             SPECTRA,
             CORRELATIONS,
             "densities.zarr",

@@ -173,7 +173,7 @@ fn the_store_reads_back_in_ascending_order_with_names() {
     let store = folder.path().join("densities.zarr");
     assert!(!store.exists());
     points.sort_by(|a, b| a.value.total_cmp(&b.value));
-    run.finish(&result(points)).unwrap();
+    run.finish(&result(points), "").unwrap();
     assert_eq!(read_array(&store, "f_c"), (vec![2], vec![-0.02, 0.01]));
     let (shape, values) = read_array(&store, "p_xy");
     assert_eq!(shape, [2, 2, 3]);
@@ -211,7 +211,7 @@ fn tables_grow_by_rows_and_end_in_ascending_order() {
     };
     assert_eq!(first(rows(&before[0])), ["0.3", "0.1", "0.2", "0.25"]);
     points.sort_by(|a, b| a.value.total_cmp(&b.value));
-    run.finish(&result(points)).unwrap();
+    run.finish(&result(points), "").unwrap();
     for (name, before) in ["points.csv", "features.csv"].iter().zip(before) {
         let now = std::fs::read_to_string(folder.path().join(name)).unwrap();
         let mut wanted = rows(&before);

@@ -45,3 +45,15 @@ pub(crate) fn assert_holds([value, error]: [f64; 2], exact: f64, largest: f64) {
         "{value} ± {error:e} instead of {largest:e}"
     );
 }
+
+/// F(1, -1/3; 7/6; z) by its series, 0 ≤ z < 1.
+pub(crate) fn hypergeometric(z: f64) -> f64 {
+    let (a, b, c) = (1.0, -1.0 / 3.0, 7.0 / 6.0);
+    let terms = (0..20_000).scan(1.0, |term: &mut f64, n| {
+        let n = f64::from(n);
+        let now = *term;
+        *term *= (a + n) * (b + n) / ((c + n) * (n + 1.0)) * z;
+        Some(now)
+    });
+    terms.sum()
+}

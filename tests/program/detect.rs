@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 use crate::common::room::{Printed, Room, assert_same};
 use crate::common::table::Table;
 
-const GENERATOR: &str = "method.kind=generator cells.x.count=24 cells.y.count=24 sweep.points=4 locate.tolerance=5e-3 locate.effort=0";
+const GENERATOR: &str =
+    "method.kind=generator cells.x.count=24 cells.y.count=24 sweep.points=4 locate.tolerance=5e-3";
 /// Damped well, so that trajectories forget their start soon, with the same ratios of noise and friction to damping.
 const SAMPLED: &str = "method.kind=sgcm system.parameters.kappa=0.1 system.parameters.sigma2=0.1 sweep.from=-0.2 \
                        sweep.to=0.1 cells.x.count=24 cells.y={from=-5.5,to=5.5,count=24} sweep.points=4 \
@@ -163,8 +164,11 @@ fn what_closer_looks_have_found_stands_again_with_the_same_settings_alone() {
         &without_manifest(&room, "run"),
         "unchanged settings",
     );
+    let before = table("run");
     room.solved("detect run --quiet locate.effort=0");
-    assert!(!room.holds("run/closer_looks.json"));
+    assert_ne!(table("run"), before);
+    room.solved("detect run --quiet locate.effort=1");
+    assert_eq!(table("run"), before);
 }
 
 /// The points without wall-clock times, and without what the solve found: that speaks of the densities watched then.

@@ -12,6 +12,7 @@ use pbif::system::{BoundQuantity, Model, regions};
 use statrs::function::erf::erf;
 use statrs::function::gamma::gamma;
 
+use crate::common::numbers::hypergeometric;
 use crate::common::steady::{even_cells, model};
 
 /// A field with its cells.
@@ -320,16 +321,4 @@ fn the_committor_of_maier_and_steins_system_is_that_of_paths_everywhere() {
         assert!(error < 1e-2);
         assert!((value - sampled.value).abs() < 4.0 * sampled.error() + error);
     }
-}
-
-/// F(1, -1/3; 7/6; z) by its series, 0 ≤ z < 1.
-fn hypergeometric(z: f64) -> f64 {
-    let (a, b, c) = (1.0, -1.0 / 3.0, 7.0 / 6.0);
-    let terms = (0..20_000).scan(1.0, |term: &mut f64, n| {
-        let n = f64::from(n);
-        let now = *term;
-        *term *= (a + n) * (b + n) / ((c + n) * (n + 1.0)) * z;
-        Some(now)
-    });
-    terms.sum()
 }

@@ -11,7 +11,7 @@ use pbif::stationary::generator::RateOptions;
 use pbif::system::{Model, regions};
 use statrs::function::gamma::gamma;
 
-use crate::common::numbers::{Numbers, given};
+use crate::common::numbers::{Numbers, given, hypergeometric};
 use crate::common::steady::{even_cells, model};
 
 /// The numbers of a passage from a state until an inequality holds.
@@ -153,18 +153,6 @@ fn dry_friction_holds_as_long_as_the_formula_says() {
     let friction = model(&[("v", "-0.3 sign(v)")], &[("v", "sqrt(0.2)")]);
     let found = passage(&friction, "abs(v) > 1", &[0.0], &[(-1.5, 1.5, 400)]);
     holds("dry friction", found.mean, exact, 1e-3);
-}
-
-/// F(1, -1/3; 7/6; z) by its series, 0 ≤ z < 1.
-fn hypergeometric(z: f64) -> f64 {
-    let (a, b, c) = (1.0, -1.0 / 3.0, 7.0 / 6.0);
-    let terms = (0..20_000).scan(1.0, |term: &mut f64, n| {
-        let n = f64::from(n);
-        let now = *term;
-        *term *= (a + n) * (b + n) / ((c + n) * (n + 1.0)) * z;
-        Some(now)
-    });
-    terms.sum()
 }
 
 #[test]

@@ -249,7 +249,7 @@ fn beyond_the_sum(places: &[f64], place: f64) -> Vec<f64> {
 }
 
 /// Weights of values at some places in the polynomial through them, at another place.
-fn lagrange(places: &[f64], at: f64) -> Vec<f64> {
+pub(crate) fn lagrange(places: &[f64], at: f64) -> Vec<f64> {
     let weight = |index: usize| {
         let others = places
             .iter()

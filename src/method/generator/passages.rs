@@ -10,8 +10,9 @@ use crate::generator::GeneratorOptions;
 use crate::method::measures::measures_of_passage;
 use crate::method::{GeneratorMethodOptions, MethodError, Problem};
 use crate::passage::{FieldTarget, KnownDensity, Passage, PassageError, Timed, field, timed};
+use crate::space::CellSpace;
 use crate::stationary::generator::{RateError, RateOptions};
-use crate::system::{PassageQuestion, Region, System};
+use crate::system::{FieldQuestion, Model, ParameterValues, PassageQuestion, Region, System};
 
 /// Error at which times stop to be iterated, relative to their sum. Numbers have its square: they are put right by what
 /// equations from both sides leave.
@@ -34,74 +35,126 @@ pub(super) fn add_passages(
     if family.questions.passages.is_empty() || problem.subject().measures.is_empty() {
         return Ok(());
     }
-    let rates = RateOptions {
-        tolerance: TOLERANCE,
-        memory_limit_bytes: (options.memory_limit * 1e9) as u64,
-        ..RateOptions::default()
+    let asked = Asked {
+        system,
+        space: problem.space(),
+        values: family.values_at(value)?,
+        density,
+        generator: GeneratorOptions {
+            scheme: options.scheme,
+        },
+        rates: RateOptions {
+            tolerance: TOLERANCE,
+            memory_limit_bytes: (options.memory_limit * 1e9) as u64,
+            ..RateOptions::default()
+        },
+        cancellation,
     };
-    let generator = GeneratorOptions {
-        scheme: options.scheme,
-    };
-    let values = family.values_at(value)?;
-    for (number, question) in family.questions.passages.iter().enumerate() {
-        let settings = (&generator, &rates);
-        let space = problem.space();
+    for (passage, question) in family.questions.passages.iter().enumerate() {
         let mut faults = Vec::new();
-        let solved = |question: &PassageQuestion| -> Result<_, MethodError> {
-            let passage = Passage::bind(question, &values)?;
-            let solved = timed(system, space, &passage, density, settings, cancellation);
-            Ok(solved.map(|timed| measures(question, &timed)))
+        let numbers = if question.has_basins() {
+            asked.numbers_of_basins(question, family.model(), watched)?
+        } else {
+            asked.numbers(question)?
         };
-        match question.has_basins() {
-            false => match solved(question)? {
-                Ok(measures) => report.measures.extend(measures),
-                Err(error) => faults.push(error),
-            },
-            true => {
-                let model = family.model();
-                let intervals = |moved| with_intervals(question, model, watched, moved);
-                let all: Option<Vec<PassageQuestion>> = MOVED.into_iter().map(intervals).collect();
-                let Some(all) = all else {
-                    let (passage, fault) = (number, PassageFault::NoPeak);
-                    report.findings.push(Finding::NoPassage { passage, fault });
-                    continue;
-                };
-                let all: Vec<_> = all.iter().map(solved).collect::<Result<_, _>>()?;
-                match all.into_iter().collect::<Result<Vec<_>, _>>() {
-                    Ok(all) => report.measures.extend(with_moved_ends(all)),
-                    Err(error) => faults.push(error),
-                }
+        match numbers {
+            Ok(measures) => report.measures.extend(measures),
+            Err(fault) => faults.push(fault),
+        }
+        for wanted in &question.fields {
+            match asked.field(wanted)? {
+                Ok(field) => report.fields.push(field),
+                Err(fault) => faults.push(fault),
             }
         }
-        for asked in &question.fields {
-            let bind = |region: &Region| region.level().bind(&values);
-            let target = FieldTarget {
-                until: bind(&asked.until)?,
-                exits: asked.exits.iter().map(bind).collect::<Result<_, _>>()?,
-                part: asked.part,
-            };
-            match field(system, space, &target, settings, cancellation) {
-                Ok(found) => report.fields.push(StateField {
-                    name: asked.name.clone(),
-                    axes: space.axes().to_vec(),
-                    values: found.values,
-                    errors: found.errors,
-                }),
-                Err(error) => faults.push(error),
-            }
-        }
-        for error in faults {
-            if let PassageError::Rate(RateError::Cancelled(cancelled)) = error {
-                return Err(cancelled.into());
-            }
-            let (passage, fault) = (number, fault(&error));
-            let finding = Finding::NoPassage { passage, fault };
-            if !report.findings.contains(&finding) {
-                report.findings.push(finding);
-            }
-        }
+        faults.dedup();
+        let findings = faults.into_iter();
+        report
+            .findings
+            .extend(findings.map(|fault| Finding::NoPassage { passage, fault }));
     }
     Ok(())
+}
+
+/// What passages at a value are solved with.
+struct Asked<'a> {
+    system: &'a Arc<dyn System>,
+    space: &'a CellSpace,
+    values: ParameterValues,
+    density: Option<KnownDensity<'a>>,
+    generator: GeneratorOptions,
+    rates: RateOptions,
+    cancellation: &'a Cancellation,
+}
+
+/// An answer, or why there is none.
+type Answer<T> = Result<Result<T, PassageFault>, MethodError>;
+
+impl Asked<'_> {
+    fn numbers(&self, question: &PassageQuestion) -> Answer<Vec<Measure>> {
+        let passage = Passage::bind(question, &self.values)?;
+        let settings = (&self.generator, &self.rates);
+        let (space, density) = (self.space, self.density);
+        let found = timed(
+            self.system,
+            space,
+            &passage,
+            density,
+            settings,
+            self.cancellation,
+        );
+        or_fault(found.map(|timed| measures(question, &timed)))
+    }
+
+    /// The same between regions that are basins, whose ends are moved by their errors.
+    fn numbers_of_basins(
+        &self,
+        question: &PassageQuestion,
+        model: &Model,
+        watched: &[EstimatedDensity],
+    ) -> Answer<Vec<Measure>> {
+        let mut all = Vec::new();
+        for moved in MOVED {
+            let Some(typed) = with_intervals(question, model, watched, moved) else {
+                return Ok(Err(PassageFault::NoPeak));
+            };
+            match self.numbers(&typed)? {
+                Ok(numbers) => all.push(numbers),
+                Err(fault) => return Ok(Err(fault)),
+            }
+        }
+        Ok(Ok(with_moved_ends(all)))
+    }
+
+    fn field(&self, wanted: &FieldQuestion) -> Answer<StateField> {
+        let bind = |region: &Region| region.level().bind(&self.values);
+        let target = FieldTarget {
+            until: bind(&wanted.until)?,
+            exits: wanted.exits.iter().map(bind).collect::<Result<_, _>>()?,
+            part: wanted.part,
+        };
+        let settings = (&self.generator, &self.rates);
+        let found = field(
+            self.system,
+            self.space,
+            &target,
+            settings,
+            self.cancellation,
+        );
+        or_fault(found.map(|found| StateField {
+            name: wanted.name.clone(),
+            axes: self.space.axes().to_vec(),
+            values: found.values,
+            errors: found.errors,
+        }))
+    }
+}
+
+fn or_fault<T>(found: Result<T, PassageError>) -> Answer<T> {
+    match found {
+        Err(PassageError::Rate(RateError::Cancelled(cancelled))) => Err(cancelled.into()),
+        found => Ok(found.map_err(|error| fault(&error))),
+    }
 }
 
 fn measures(question: &PassageQuestion, timed: &Timed) -> Vec<Measure> {
