@@ -148,6 +148,10 @@ impl<'a> FieldMap<'a> {
         let [x, y] = &field.axes[..] else {
             return None;
         };
+        // Colours go from the centre of one cell to that of the next.
+        if x.count().min(y.count()) < 2 {
+            return None;
+        }
         let finite = field.values.iter().filter(|value| value.is_finite());
         let largest = finite.fold(0.0, |most: f64, value| most.max(*value));
         (largest > 0.0).then_some(Self {

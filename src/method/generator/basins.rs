@@ -53,7 +53,7 @@ fn ends(basin: Basin, densities: &[EstimatedDensity], moved: f64) -> Option<[Opt
         all
     };
     let (peaks, valleys) = (places(FeatureKind::Peak), places(FeatureKind::Valley));
-    let &(peak, _) = peaks.get(basin.peak - 1)?;
+    let &(peak, _) = peaks.get(basin.peak.checked_sub(1)?)?;
     // Between two neighbouring peaks is a valley, or nobody knows where the basin ends.
     let valley = |other: Option<&(f64, f64)>| match other {
         None => Some(None),
