@@ -26,6 +26,20 @@ use crate::system::{BoundQuantity, LANES, Lanes, System};
 pub(crate) use border::lagrange;
 use border::{Beyond, Border, GridLine};
 
+/// A part of the rate at which a process ends from a cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Ending {
+    /// The cell inside the region that is entered, or the last one before the end of the range.
+    pub cell: usize,
+    /// The axis through whose end the process leaves the range, and whether it is the upper end; `None` where it enters
+    /// the region.
+    pub end: Option<(usize, bool)>,
+    /// The cell from which.
+    pub source: usize,
+    /// Rate, per unit time.
+    pub rate: f64,
+}
+
 /// The generator on the cells outside of a region.
 #[derive(Debug, Clone)]
 pub(crate) struct AbsorbingGenerator {
@@ -36,8 +50,8 @@ pub(crate) struct AbsorbingGenerator {
     pub kept: Vec<bool>,
     /// Rate at which the process ends from a cell: it enters the region, or leaves the range of the cells.
     pub ends: Vec<f64>,
-    /// Parts of that which enter the region: the cell inside it, the cell from which, rate. A pair may have several.
-    pub entries: Vec<(usize, usize, f64)>,
+    /// Parts of that, which sum to it.
+    pub endings: Vec<Ending>,
     /// Weights with which the unknowns sum to the mass outside of the region: zero inside, one away from the border,
     /// where the density does not end between two nodes. In two ways, which differ where the border is oblique.
     pub weights: [Vec<f64>; 2],
@@ -123,7 +137,7 @@ pub(crate) fn assemble_absorbing(
         weights: [0; 2].map(|_| (0..space.n_cells()).map(weight).collect()),
         ends: vec![0.0; space.n_cells()],
         entries: Vec::new(),
-        entered: Vec::new(),
+        endings: Vec::new(),
         border,
     };
     for axis in 0..axes.len() {
@@ -172,7 +186,7 @@ struct Assembly<'a> {
     border: Border<'a>,
     entries: Vec<(usize, usize, f64)>,
     ends: Vec<f64>,
-    entered: Vec<(usize, usize, f64)>,
+    endings: Vec<Ending>,
     weights: [Vec<f64>; 2],
 }
 
@@ -268,19 +282,28 @@ impl Assembly<'_> {
         if face > from {
             self.entries.push((line.at(face - 1), source, -flux));
         } else {
-            self.ends[source] -= flux;
-            if from > 0 {
-                self.entered.push((line.at(from - 1), source, -flux));
-            }
+            let cell = line.at(from.saturating_sub(1));
+            let end = (from == 0).then_some((line.axis, false));
+            self.finish(cell, end, source, -flux);
         }
         if face < to {
             self.entries.push((line.at(face), source, flux));
         } else {
-            self.ends[source] += flux;
-            if to < count {
-                self.entered.push((line.at(to), source, flux));
-            }
+            let end = (to == count).then_some((line.axis, true));
+            let cell = line.at(to.min(count - 1));
+            self.finish(cell, end, source, flux);
         }
+    }
+
+    /// Adds a part of the rate at which the process ends from a cell.
+    fn finish(&mut self, cell: usize, end: Option<(usize, bool)>, source: usize, rate: f64) {
+        self.ends[source] += rate;
+        self.endings.push(Ending {
+            cell,
+            end,
+            source,
+            rate,
+        });
     }
 
     /// Adds the rates between modes where their places are kept.
@@ -319,7 +342,7 @@ impl Assembly<'_> {
             rates: self.entries,
             kept,
             ends: self.ends,
-            entries: self.entered,
+            endings: self.endings,
             weights: self.weights,
         })
     }

@@ -44,7 +44,9 @@ mod shared_noise;
 mod smooth;
 mod spectral_viscosity;
 
-pub(crate) use absorbing::{AbsorbingGenerator, Closure, assemble_absorbing, lagrange, levels};
+pub(crate) use absorbing::{
+    AbsorbingGenerator, Closure, Ending, assemble_absorbing, lagrange, levels,
+};
 pub use assemble::assemble;
 pub(crate) use assemble::assemble_damped;
 pub use derivative::assemble_derivative;

@@ -1,45 +1,42 @@
 //! Shares of the processes that end by entering each part of a target.
 
 use super::{Passage, dot};
-use crate::generator::AbsorbingGenerator;
+use crate::generator::{AbsorbingGenerator, Ending};
 use crate::space::CellSpace;
 use crate::system::BoundQuantity;
 
-/// Which part of a target each cell inside it belongs to: the one whose level is least at its node.
-pub(super) struct Exits {
-    parts: usize,
-    of_cells: Vec<Option<usize>>,
+/// Which part of a target a process comes to: the one whose level is least where it ends.
+pub(super) struct Exits<'a> {
+    parts: &'a [BoundQuantity],
+    space: &'a CellSpace,
 }
 
-impl Exits {
+impl<'a> Exits<'a> {
     /// The parts of a passage on cells.
-    pub(super) fn new(passage: &Passage, space: &CellSpace, kept: &[bool]) -> Self {
-        let nearest = |state: &[f64]| {
-            let levels = passage
-                .exits
-                .iter()
-                .map(|part: &BoundQuantity| part.at(state));
-            let least = levels
-                .enumerate()
-                .min_by(|one, other| one.1.total_cmp(&other.1));
-            least.map(|(part, _)| part)
-        };
-        let of_cell = |cell: usize| match kept[cell] || passage.exits.is_empty() {
-            true => None,
-            false => nearest(&space.node(cell)),
-        };
-        Self {
-            parts: passage.exits.len(),
-            of_cells: (0..kept.len()).map(of_cell).collect(),
-        }
+    pub(super) fn new(passage: &'a Passage, space: &'a CellSpace) -> Self {
+        let parts = &passage.exits;
+        Self { parts, space }
     }
 
-    /// For each part, the rates at which a process enters it from the cells.
+    /// The part that a process comes to: at the node of the cell that it enters, or on the end of an axis that is a
+    /// border, as that of a displacement without noise is.
+    fn part(&self, ending: &Ending) -> Option<usize> {
+        let mut state = self.space.node(ending.cell);
+        if let Some((axis, is_upper)) = ending.end {
+            let range = &self.space.axes()[axis];
+            state[axis] = if is_upper { range.to() } else { range.from() };
+        }
+        let levels = self.parts.iter().map(|part| part.at(&state)).enumerate();
+        let least = levels.min_by(|one, other| one.1.total_cmp(&other.1));
+        least.map(|(part, _)| part)
+    }
+
+    /// For each part, the rates at which a process comes to it from the cells.
     pub(super) fn rates(&self, generator: &AbsorbingGenerator) -> Vec<Vec<f64>> {
-        let mut rates = vec![vec![0.0; self.of_cells.len()]; self.parts];
-        for &(inside, source, rate) in &generator.entries {
-            if let Some(part) = self.of_cells[inside] {
-                rates[part][source] += rate;
+        let mut rates = vec![vec![0.0; self.space.n_cells()]; self.parts.len()];
+        for ending in &generator.endings {
+            if let Some(part) = self.part(ending) {
+                rates[part][ending.source] += ending.rate;
             }
         }
         rates

@@ -153,7 +153,7 @@ impl FieldQuestion<'_> {
             times: Vec::new(),
             quantiles: Vec::new(),
         };
-        let exits = Exits::new(&passage, &space, &full.kept);
+        let exits = Exits::new(&passage, &space);
         let gain = |generator: &AbsorbingGenerator| match self.target.part {
             Some(part) => exits.rates(generator).swap_remove(part),
             None => generator.weights[0].clone(),

@@ -94,7 +94,7 @@ impl Question<'_> {
             judged.and_then(|density| DensityStart::new(self.passage, density, self.space, cells));
         let starts = [start.as_slice(), &coarse];
         let begun = other.map(|other| other.on(&space, &full.kept));
-        let exits = Exits::new(self.passage, &space, &full.kept);
+        let exits = Exits::new(self.passage, &space);
         let (mut both, lasting) = moments(
             &mut solver,
             ([&full, &half, &third], &exits),

@@ -12,6 +12,7 @@ use pbif::system::{BoundQuantity, Model, regions};
 use statrs::function::erf::erf;
 use statrs::function::gamma::gamma;
 
+use super::passages::sampled_share;
 use crate::common::numbers::hypergeometric;
 use crate::common::steady::{even_cells, model};
 
@@ -265,60 +266,62 @@ fn an_integrated_brownian_motion_leaves_an_interval_as_the_closed_form_and_finer
     });
 }
 
+/// A committor at some cells is the share of 20 000 paths from each.
+#[track_caller]
+fn is_that_of_paths(
+    system: &Arc<Model>,
+    parts: [&str; 2],
+    axes: &[(f64, f64, usize)],
+    starts: &[[f64; 2]],
+) -> Found {
+    let found = found(system, &parts, Some(1), axes);
+    for start in starts {
+        let cell = found.space.find(start).unwrap();
+        let state = found.space.centre(cell);
+        let (value, error) = (found.field.values[cell], found.field.errors[cell]);
+        let (sampled, of_sample) = sampled_share(system, parts, (&found.space, &state, 20_000));
+        println!(
+            "from {state:.2?}: {value:.5} ± {error:.1e}, paths {sampled:.5} ± {of_sample:.1e}"
+        );
+        assert!(error < 1e-2);
+        assert!((value - sampled).abs() < 4.0 * of_sample + error);
+    }
+    found
+}
+
 /// R. S. Maier and D. L. Stein, Physical Review E 48, 931 (1993): a drift without a potential.
 #[test]
 fn the_committor_of_maier_and_steins_system_is_that_of_paths_everywhere() {
-    use pbif::monte_carlo::{PassageRun, PassageStart, PassageTarget, first_passages};
     let equations = [("u", "u - u^3 - 10 u v^2"), ("v", "-(1 + u^2) v")];
     let system = model(&equations, &[("u", "sqrt(0.2)"), ("v", "sqrt(0.2)")]);
     let parts = ["(u + 1)^2 + v^2 < 0.09", "(u - 1)^2 + v^2 < 0.09"];
-    let found = found(
-        &system,
-        &parts,
-        Some(1),
-        &[(-1.8, 1.8, 72), (-1.2, 1.2, 60)],
-    );
-    let values = system.values(&[]).unwrap();
-    let bound = |text: &str| {
-        let region = regions(&system, &[("until", text)]).unwrap().remove(0);
-        region.level().bind(&values).unwrap()
-    };
-    let (exits, until) = (
-        parts.map(bound),
-        bound(&format!("{} or {}", parts[0], parts[1])),
-    );
-    for start in [
+    let starts = [
         [-0.4, 0.3],
         [0.1, 0.0],
         [0.2, -0.5],
         [-0.66, 0.02],
         [1.2, 0.9],
         [-1.5, -0.6],
-    ] {
-        let cell = found.space.find(&start).unwrap();
-        let state = found.space.centre(cell);
-        let run = PassageRun {
-            time_step: 0.02,
-            integrator: pbif::sampling::Integrator::StochasticHeun,
-            seed: 11,
-            paths: 20_000,
-            longest: 200.0,
-        };
-        let target = PassageTarget {
-            until: &until,
-            exits: &exits,
-        };
-        let (from, never) = (PassageStart::State(&state), Cancellation::new());
-        let bound = system.system_with(&[]).unwrap();
-        let paths = first_passages(&*bound, &found.space, target, &from, &run, &never);
-        let sampled = paths.unwrap().numbers(&[], &[])[4];
-        let (value, error) = (found.field.values[cell], found.field.errors[cell]);
-        println!(
-            "from {state:.2?}: {value:.5} ± {error:.1e}, paths {:.5} ± {:.1e}",
-            sampled.value,
-            sampled.error()
-        );
-        assert!(error < 1e-2);
-        assert!((value - sampled.value).abs() < 4.0 * sampled.error() + error);
+    ];
+    is_that_of_paths(&system, parts, &[(-1.8, 1.8, 72), (-1.2, 1.2, 60)], &starts);
+}
+
+/// Borders that stand across a displacement, which noise does not move: processes are carried over them. From the
+/// mirror image of a state the other well is as likely.
+#[test]
+fn the_committor_of_an_oscillator_between_its_wells_is_that_of_paths() {
+    let equations = [("x", "y"), ("y", "-0.5 y + x - x^3")];
+    let system = model(&equations, &[("x", "0 x"), ("y", "sqrt(0.2)")]);
+    let starts = [[0.1, 0.4], [-0.3, -0.1], [0.2, -0.7], [-0.6, 0.5]];
+    let axes = [(-2.0, 2.0, 60), (-2.6, 2.6, 60)];
+    let found = is_that_of_paths(&system, ["x < -0.7", "x > 0.7"], &axes, &starts);
+    let cells = found.space.n_cells();
+    let mut between = 0;
+    for cell in 0..cells {
+        let [value, other] = [cell, cells - 1 - cell].map(|cell| found.field.values[cell]);
+        let [error, of_other] = [cell, cells - 1 - cell].map(|cell| found.field.errors[cell]);
+        assert!((value + other - 1.0).abs() <= error + of_other + 1e-9);
+        between += usize::from(0.1 < value && value < 0.9);
     }
+    assert!(between > 100, "{between}");
 }

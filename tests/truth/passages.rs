@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use pbif::cancellation::Cancellation;
 use pbif::generator::GeneratorOptions;
+use pbif::monte_carlo::{PassageRun, PassageStart, PassageTarget, first_passages};
 use pbif::passage::{Passage, Start, Timed, WithError, timed};
 use pbif::space::{Axis, CellSpace};
 use pbif::stationary::generator::RateOptions;
@@ -403,56 +404,75 @@ fn ornstein_uhlenbeck_leaves_by_the_far_end_as_often_as_quadrature_says() {
     }
 }
 
-/// R. S. Maier and D. L. Stein, Physical Review E 48, 931 (1993): a drift without a potential.
-#[test]
-fn the_committor_of_maier_and_steins_system_is_that_of_paths() {
-    use pbif::monte_carlo::{PassageRun, PassageStart, PassageTarget, first_passages};
-    let equations = [("u", "u - u^3 - 10 u v^2"), ("v", "-(1 + u^2) v")];
-    let system = model(&equations, &[("u", "sqrt(0.2)"), ("v", "sqrt(0.2)")]);
-    let parts = ["(u + 1)^2 + v^2 < 0.09", "(u - 1)^2 + v^2 < 0.09"];
-    let axes = [(-1.8, 1.8, 72), (-1.2, 1.2, 60)];
+/// The share of free paths from a state that come to the second of two regions first, and its standard error.
+pub(super) fn sampled_share(
+    system: &Arc<Model>,
+    parts: [&str; 2],
+    (space, start, paths): (&CellSpace, &[f64], usize),
+) -> (f64, f64) {
     let values = system.values(&[]).unwrap();
     let bound = |text: &str| {
-        let region = regions(&system, &[("until", text)]).unwrap().remove(0);
+        let region = regions(system, &[("until", text)]).unwrap().remove(0);
         region.level().bind(&values).unwrap()
     };
     let exits = parts.map(bound);
     let until = bound(&format!("({}) or ({})", parts[0], parts[1]));
-    let space: Vec<Axis> = axes
-        .iter()
-        .map(|&(from, to, count)| Axis::uniform(from, to, count).unwrap())
-        .collect();
-    let space = CellSpace::new(space).unwrap();
-    for start in [[-0.4, 0.3], [0.1, 0.0], [0.2, -0.5]] {
-        let found = ended_by(&system, &parts, &start, &axes);
-        let run = PassageRun {
-            time_step: 0.02,
-            integrator: pbif::sampling::Integrator::StochasticHeun,
-            seed: 11,
-            paths: 40_000,
-            longest: 200.0,
-        };
-        let target = PassageTarget {
-            until: &until,
-            exits: &exits,
-        };
-        let never = Cancellation::new();
-        let paths = first_passages(
-            &*system.system_with(&[]).unwrap(),
-            &space,
-            target,
-            &PassageStart::State(&start),
-            &run,
-            &never,
-        );
-        let sampled = paths.unwrap().numbers(&[], &[])[4];
-        let (value, error) = found.shares[1];
-        println!(
-            "from {start:?}: {value:.5} ± {error:.1e}, paths {:.5} ± {:.1e}",
-            sampled.value,
-            sampled.error()
-        );
+    let target = PassageTarget {
+        until: &until,
+        exits: &exits,
+    };
+    let run = PassageRun {
+        time_step: 0.02,
+        integrator: pbif::sampling::Integrator::StochasticHeun,
+        seed: 11,
+        paths,
+        longest: 200.0,
+    };
+    let (from, never) = (PassageStart::State(start), Cancellation::new());
+    let system = system.system_with(&[]).unwrap();
+    let paths = first_passages(&*system, space, target, &from, &run, &never);
+    let share = &paths.unwrap().numbers(&[], &[])[4];
+    (share.value, share.error())
+}
+
+/// Shares of exits by the second of two regions are those of 40 000 paths from each of some states.
+#[track_caller]
+fn shares_are_those_of_paths(
+    system: &Arc<Model>,
+    parts: [&str; 2],
+    axes: &[(f64, f64, usize)],
+    starts: &[[f64; 2]],
+) {
+    let space = even_cells(axes);
+    for start in starts {
+        let (value, error) = ended_by(system, &parts, start, axes).shares[1];
+        let (sampled, of_sample) = sampled_share(system, parts, (&space, start, 40_000));
+        println!("from {start:?}: {value:.5} ± {error:.1e}, paths {sampled:.5} ± {of_sample:.1e}");
         assert!(error < 2e-3);
-        assert!((value - sampled.value).abs() < 4.0 * sampled.error() + error);
+        assert!((value - sampled).abs() < 4.0 * of_sample + error);
     }
+}
+
+/// R. S. Maier and D. L. Stein, Physical Review E 48, 931 (1993): a drift without a potential.
+#[test]
+fn the_committor_of_maier_and_steins_system_is_that_of_paths() {
+    let equations = [("u", "u - u^3 - 10 u v^2"), ("v", "-(1 + u^2) v")];
+    let system = model(&equations, &[("u", "sqrt(0.2)"), ("v", "sqrt(0.2)")]);
+    let parts = ["(u + 1)^2 + v^2 < 0.09", "(u - 1)^2 + v^2 < 0.09"];
+    let axes = [(-1.8, 1.8, 72), (-1.2, 1.2, 60)];
+    let starts = [[-0.4, 0.3], [0.1, 0.0], [0.2, -0.5]];
+    shares_are_those_of_paths(&system, parts, &axes, &starts);
+}
+
+/// Borders that stand across a displacement, which noise does not move: processes are carried over them.
+#[test]
+fn shares_of_an_oscillators_exits_are_those_of_paths() {
+    let system = model(
+        &[("x", "y"), ("y", "-0.5 y + x - x^3")],
+        &[("x", "0 x"), ("y", "sqrt(0.2)")],
+    );
+    let parts = ["x < -0.7", "x > 0.9"];
+    let axes = [(-2.0, 2.0, 60), (-2.6, 2.6, 60)];
+    let starts = [[0.0, 0.0], [0.1, 0.4], [-0.3, -0.1]];
+    shares_are_those_of_paths(&system, parts, &axes, &starts);
 }
