@@ -163,6 +163,10 @@ impl RegionFault {
                 "write `peak 1 of {}`",
                 axes.first().map_or("x", String::as_str)
             )),
+            Self::NoInequality { text } if text.starts_with("peak ") => Some(
+                "the basin of a peak stands alone: give it a region of its own, without `and`, `or` and `not`"
+                    .to_owned(),
+            ),
             _ => Some(
                 "write inequalities such as `x < -0.2` or `x^2 + y^2 > 4`, joined by `and`, `or` and `not`"
                     .to_owned(),
@@ -329,6 +333,8 @@ mod tests {
             let given = [("left", "peak 1 of x"), ("one", text)];
             assert_eq!(regions(&model, &given).unwrap_err()[0].index, 1);
         }
+        let joined = regions(&model, &[("one", "peak 1 of x and y > 0")]).unwrap_err();
+        assert!(joined[0].fault.remedy().unwrap().contains("stands alone"));
     }
 
     #[test]

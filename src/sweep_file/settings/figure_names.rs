@@ -4,21 +4,10 @@ use crate::continuation::{CellCheck, Subject, SweepResult};
 use crate::density::Observable;
 use crate::figure::Figures;
 use crate::sweep_file::diagnostic::Diagnostic;
-use crate::sweep_file::draft::{Draft, PassageDraft};
+use crate::sweep_file::draft::Draft;
 use crate::sweep_file::names::{list, quotable};
 use crate::sweep_file::reader::Reader;
-use crate::system::{Family, FieldKind};
-
-/// Whether a name is that of a field of a passage, which is read after the figures: `field_exit_mean_time_0.5`.
-fn is_field(passage: &PassageDraft, name: &str) -> bool {
-    let of = |kind: &FieldKind| match kind {
-        FieldKind::MeanTime => "mean_time",
-        FieldKind::Committor => "committor",
-    };
-    let rest = name.strip_prefix(&format!("field_{}_", passage.name));
-    let mut asked = passage.fields.iter().flatten();
-    rest.is_some_and(|rest| asked.any(|kind| rest.contains(of(kind))))
-}
+use crate::system::Family;
 
 /// Refuses names in `figures.draw` that no figure of this sweep can have.
 pub(super) fn check(
@@ -50,8 +39,7 @@ pub(super) fn check(
             let value = name.strip_prefix(figure.as_str());
             value.is_some_and(|value| value.starts_with('_'))
         };
-        let is_field = draft.passages.iter().any(|passage| is_field(passage, name));
-        if figures.check(&[name]).is_ok() || known.iter().any(is_at_value) || is_field {
+        if figures.check(&[name]).is_ok() || known.iter().any(is_at_value) {
             continue;
         }
         let diagnostic = Diagnostic::new(format!("there is no figure `{}`", quotable(name)))

@@ -115,11 +115,6 @@ impl Settings {
         let figures_at = swept
             .as_ref()
             .map(|swept| figures::read_at(&mut reader, &draft, swept));
-        #[cfg(feature = "figures")]
-        if let (Some(family), Some(watched)) = (family, &watched) {
-            let family = family.clone().with_quantities(watched.quantities.clone());
-            figure_names::check(&mut reader, &draft, &family, &watched.observables);
-        }
         figures::check_style(&mut reader, &draft.figures.style);
         let (Some(swept), Some(axes), Some(watched), Some(figures_at), true) =
             (swept, axes, watched, figures_at, reader.is_clean())
@@ -136,6 +131,8 @@ impl Settings {
         family.questions.spectrum = spectrum::read(&mut reader, &draft, &family);
         family.questions.levels = levels::read(&mut reader, &draft, &family, &watched.observables);
         let bins = quantities::read_bins(&mut reader, &draft, &family);
+        #[cfg(feature = "figures")]
+        figure_names::check(&mut reader, &draft, &family, &watched.observables);
         if !reader.is_clean() {
             return Err(reader.into_report());
         }

@@ -116,3 +116,23 @@ fn walls_stand_where_cells_end_and_are_written_again() {
     let word = refused(&WALLED.replace("open", "closed"), &[]);
     assert!(word.contains("closed"), "{word}");
 }
+
+#[cfg(feature = "figures")]
+#[test]
+fn single_figures_of_what_is_asked_for_can_be_named() {
+    let asked = "[spectrum]\nof = [\"v\"]\n\
+                 [passage]\nout = { from = \"x < 1\", to = \"x > 8\", fields = [\"committor\"] }\n";
+    let text = format!("{WALLED}{asked}");
+    let drawn = |name: &str| parse(&text, &[&format!("figures.draw=[\"{name}\"]")]);
+    for name in [
+        "spectrum_v",
+        "field_out_committor",
+        "field_out_committor_1.5",
+    ] {
+        drawn(name).unwrap();
+    }
+    for name in ["spectrum_x", "field_out_mean_time"] {
+        let wrong = drawn(name).unwrap_err().to_string();
+        assert!(wrong.contains("there is no figure"), "{wrong}");
+    }
+}
