@@ -12,9 +12,11 @@ use super::span::Span;
 use super::{CellCheck, Session, SourceError};
 use crate::topology::{Detector, IndicatorKind};
 
-/// Error of a value on finer cells over its distance to the value on those that it checks, see above.
-pub(super) fn share_of_distance(check: CellCheck) -> f64 {
+/// Error of a value on finer cells over its distance to the value on those that it checks, see above; what order one
+/// gives where the order by which errors fall is not known yet.
+pub(super) fn share_of_distance(check: CellCheck, is_order_known: bool) -> f64 {
     match check {
+        CellCheck::OnFinerCells { ratio } if !is_order_known => (ratio - 1.0).recip().max(1.0),
         CellCheck::OnFinerCells { ratio } => (ratio * ratio - 1.0).recip().max(1.0),
         CellCheck::Impossible | CellCheck::Needless => 1.0,
     }

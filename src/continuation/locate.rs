@@ -13,7 +13,7 @@ use super::levels::{asked_of, crossings};
 use super::measure::NUMERICAL_DIFFUSION;
 use super::root::{Root, root};
 use super::rows::{doubt_what_does_not_continue, in_order, inseparable, merge, without_flicker};
-use super::{CellCheck, ErrorParts, Goal, Point, Subject, persistence};
+use super::{CellCheck, ErrorParts, Finding, Goal, Point, Subject, persistence};
 use crate::density::{EstimatedDensity, Kink, Observable};
 use crate::topology::{Detector, Indicator};
 
@@ -182,7 +182,10 @@ pub(super) fn by_indicator(
     };
     let on_finer = depends_on_cells.then(|| {
         let is_forced = subject.family.model().phase_axis().is_some();
-        let cells = (density, subject.cell_check, is_forced);
+        // Where cells are wide, and on those that follow them in a closer look, errors may fall by any order.
+        let is_order_known = !options.is_closer && ![a, b].into_iter().any(has_wide_cells);
+        let share = share_of_distance(subject.cell_check, is_order_known);
+        let cells = (density, subject.cell_check, share, is_forced);
         on_finer_cells(&mut zero, &checked, cells, options, checks)
     });
     let on_finer = on_finer.flatten();
@@ -269,12 +272,11 @@ fn fall(check: CellCheck) -> f64 {
 fn on_finer_cells(
     zero: &mut Root,
     checked: &Checked<'_>,
-    (density, check, is_forced): (&EstimatedDensity, CellCheck, bool),
+    (density, check, share, is_forced): (&EstimatedDensity, CellCheck, f64, bool),
     options: &Goal,
     checks: &mut dyn Checks,
 ) -> Option<Result<u8, Doubt>> {
     let chance = by_chance(density, checked.place);
-    let share = share_of_distance(check);
     let (mut own, mut expected) = (zero.error.grid, 0.0);
     let mut found = None;
     for times in 1..=MOST_TIMES {
@@ -309,6 +311,11 @@ fn on_finer_cells(
         }
     }
     found
+}
+
+pub(super) fn has_wide_cells(point: &Point) -> bool {
+    let mut findings = point.report.findings.iter();
+    findings.any(|finding| matches!(finding, Finding::WideCells { .. }))
 }
 
 /// What speaks against the densities on either side of a zero. What holds of one that leaks away, or has not converged,

@@ -151,6 +151,7 @@ impl LocateOptions {
             largest_distance: self.largest_distance,
             grid_check: self.grid_check,
             effort: self.effort,
+            is_closer: false,
         }
     }
 }
@@ -162,6 +163,8 @@ struct Goal {
     largest_distance: f64,
     grid_check: bool,
     effort: f64,
+    /// Whether a stretch in doubt is swept again, on cells that are finer than those that left it so.
+    is_closer: bool,
 }
 
 /// A finished (or interrupted) sweep.

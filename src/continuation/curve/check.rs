@@ -89,7 +89,7 @@ impl Task<'_> {
             }
         }
         checks.retain(|check| check.finer.is_some() || check.enclosed.is_some());
-        let of_distance = share_of_distance(self.source.subject().cell_check);
+        let of_distance = share_of_distance(self.source.subject().cell_check, true);
         let nodes = walked.points.iter().enumerate();
         let points = nodes.map(|(index, node)| {
             let check = between(&checks, &walked.points, index, of_distance);

@@ -182,7 +182,7 @@ impl Task<'_> {
         let enclosed =
             enclosed.and_then(|source| self.newton(source.as_ref(), kind, coarse.at, work));
         let leak = enclosed.map_or(0.0, |enclosed| apart(enclosed.at, coarse.at));
-        let of_distance = share_of_distance(self.source.subject().cell_check);
+        let of_distance = share_of_distance(self.source.subject().cell_check, true);
         let (at, grid) = match &fine {
             Ok(fine) => (fine.at, of_distance * apart(fine.at, coarse.at)),
             Err(_) => (coarse.at, coarse.own),
