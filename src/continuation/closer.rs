@@ -6,9 +6,9 @@
 //! they locate every change. Else still finer cells are asked, as often as [`super::LocateOptions::effort`] allows;
 //! what they leave in doubt as well stays as the sweep has it.
 //!
-//! Finer cells that are wide themselves ([`super::Finding::WideCells`]) locate nothing here: the order by which their errors
-//! fall is not known yet, and two grids may agree by chance. A quotient's two wells with circulation, on 45 × 60 cells,
-//! were once located five errors off in this way. On those that are not, order one is all that is claimed.
+//! Finer cells that are wide themselves ([`super::Finding::WideCells`]) locate nothing here: the order by which their
+//! errors fall is not known yet, and two grids may agree by chance. A quotient's two wells with circulation, on 45 ×
+//! 60 cells, were once located five errors off in this way. On those that are not, order one is all that is claimed.
 
 use super::doubt::MOST_TIMES;
 use super::label::{self, Label, Located};

@@ -131,8 +131,8 @@ impl RunFolder {
         self.added
     }
 
-    /// Writes the tables of a sweep that ends at once; `sweep_file` is the complete file that was run. Its densities stay
-    /// in the journal, as a kill leaves them.
+    /// Writes the tables of a sweep that ends at once; `sweep_file` is the complete file that was run. Its densities
+    /// stay in the journal, as a kill leaves them.
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.

@@ -469,7 +469,7 @@ fn the_committor_of_maier_and_steins_system_is_that_of_paths() {
 fn shares_of_an_oscillators_exits_are_those_of_paths() {
     let system = model(
         &[("x", "y"), ("y", "-0.5 y + x - x^3")],
-        &[("x", "0 x"), ("y", "sqrt(0.2)")],
+        &[("y", "sqrt(0.2)")],
     );
     let parts = ["x < -0.7", "x > 0.9"];
     let axes = [(-2.0, 2.0, 60), (-2.6, 2.6, 60)];
