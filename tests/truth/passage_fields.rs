@@ -319,10 +319,12 @@ fn the_committor_of_an_oscillator_between_its_wells_is_that_of_paths() {
     let system = model(&equations, &[("y", "sqrt(0.2)")]);
     let starts = [[0.1, 0.4], [-0.3, -0.1], [0.2, -0.7], [-0.6, 0.5]];
     let axes = [(-2.0, 2.0, 60), (-2.6, 2.6, 60)];
-    let found = is_that_of_paths(&system, ["x < -0.7", "x > 0.7"], &axes, (&starts, 1e-2));
+    let found = is_that_of_paths(&system, ["x < -0.7", "x > 0.7"], &axes, (&starts, 1e-3));
     let cells = found.space.n_cells();
     let mut between = 0;
-    for cell in 0..cells {
+    // On the border itself, where a process moves away from it, the committor jumps.
+    let is_on_border = |cell: &usize| (found.space.centre(*cell)[0].abs() - 0.7).abs() < 1e-9;
+    for cell in (0..cells).filter(|cell| !is_on_border(cell)) {
         let [value, other] = [cell, cells - 1 - cell].map(|cell| found.field.values[cell]);
         let [error, of_other] = [cell, cells - 1 - cell].map(|cell| found.field.errors[cell]);
         assert!((value + other - 1.0).abs() <= error + of_other + 1e-9);
