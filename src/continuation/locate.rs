@@ -182,8 +182,8 @@ pub(super) fn by_indicator(
     };
     let on_finer = depends_on_cells.then(|| {
         let is_forced = subject.family.model().phase_axis().is_some();
-        // Where cells are wide, and on those that follow them in a closer look, errors may fall by any order. Along what
-        // a forcing carries to and fro cells are always wide; there, schemes say how far off it is.
+        // Where cells are wide, and on those that follow them in a closer look, errors may fall by any order. Along
+        // what a forcing carries to and fro cells are always wide; there, schemes say how far off it is.
         let is_wide = [a, b].into_iter().any(has_wide_cells);
         let is_order_known = is_forced || !(options.is_closer || is_wide);
         let share = share_of_distance(subject.cell_check, is_order_known);
