@@ -38,6 +38,7 @@ impl Found {
             points: vec![point],
             labels: Vec::new(),
             checks: None,
+            looks: Vec::new(),
             interrupted: false,
         };
         Self {
