@@ -2,10 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::closer::{CloserLook, with_looks};
 use super::distances::fill_all_distances;
 use super::doubt::{CheckedBy, Doubt};
 use super::grid::{Checked, CheckedIndicator, Checks, FinerZero, Seen, check, known, leak};
+use super::look::{CloserLook, with_looks};
 use super::span::Span;
 use super::{Goal, LocateOptions, Point, Subject, SweepResult, locate::label_points};
 use crate::topology::Detector;

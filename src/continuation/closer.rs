@@ -6,18 +6,19 @@
 //! they locate every change. Else still finer cells are asked, as often as [`super::LocateOptions::effort`] allows;
 //! what they leave in doubt as well stays as the sweep has it.
 //!
-//! Finer cells that are wide themselves ([`super::Finding::WideCells`]) locate nothing here: the order by which their
-//! errors fall is not known yet, and two grids may agree by chance. A quotient's two wells with circulation, on 45 ×
-//! 60 cells, were once located five errors off in this way. On those that are not, order one is all that is claimed.
+//! Order one is all that is claimed of finer cells. Where they are wide themselves ([`super::Finding::WideCells`]) two
+//! grids may agree by chance: what they show is believed where a look before, on coarser cells, has shown the same, and
+//! each row has moved by no more than order one allows.
 
 use super::doubt::MOST_TIMES;
-use super::label::{self, Label, Located};
+use super::label::{Label, Located};
 use super::live::{FACTORS, refined, work_of_factors};
 use super::locate::has_wide_cells;
+use super::look::{CloserLook, counted, with_rows};
 use super::segment::Work;
 use super::span::{Span, evenly_spaced};
 use super::walk::Walk;
-use super::{BifurcationStatus, CellCheck, Doubt, Goal, Point, Want};
+use super::{CellCheck, Doubt, Goal, Point, Want};
 use crate::cancellation::Cancellation;
 use crate::density::{EstimatedDensity, Observable};
 use crate::topology::Signature;
@@ -29,6 +30,10 @@ pub(super) struct Closer<'p, 'a> {
     options: &'p Goal,
     /// Of the sweep, with densities; ascending.
     points: Vec<&'p Point>,
+    /// Places of observables, and values, at which it is not known whether a pair of peak and saddle is there.
+    unsure: Vec<(usize, f64)>,
+    /// The last look at each observable and stretch, with the rows that it found.
+    last: Vec<CloserLook>,
     cancellation: &'a Cancellation,
     /// Work left, in solves of the sweep.
     left: f64,
@@ -48,9 +53,10 @@ impl<'p, 'a> Closer<'p, 'a> {
     pub(super) fn new(
         (work, span): (&'a Work<'a>, Span),
         options: &'p Goal,
-        points: &'p [Point],
+        walk: &'p Walk<'_>,
         cancellation: &'a Cancellation,
     ) -> Self {
+        let points = &walk.points;
         let of_sweep = points.len() as f64;
         let cells = work.source().cells().map_or(f64::INFINITY, |n| n as f64);
         Self {
@@ -61,6 +67,8 @@ impl<'p, 'a> Closer<'p, 'a> {
                 .iter()
                 .filter(|one| !one.detections.is_empty())
                 .collect(),
+            unsure: walk.unsure.clone(),
+            last: Vec::new(),
             cancellation,
             left: options.effort * of_sweep.max(WORTH / cells),
         }
@@ -81,7 +89,7 @@ impl<'p, 'a> Closer<'p, 'a> {
             for times in 1..=MOST_TIMES {
                 let observables = self.work.source().subject().observables.iter();
                 for (place, &observable) in observables.enumerate() {
-                    for stretch in self.stretches(rows, observable) {
+                    for stretch in self.stretches(rows, (place, observable)) {
                         let found = self.look((place, observable), stretch, times, rows);
                         looks.extend(found.filter(|look| look.replace(rows)));
                     }
@@ -103,12 +111,23 @@ impl<'p, 'a> Closer<'p, 'a> {
         for _ in 0..2 {
             let found = self.swept(of, stretch, times)?;
             if let Some(ends) = found.continues(&self.points, of.0, stretch) {
-                return Some(CloserLook {
+                let look = CloserLook {
                     observable: of.1,
                     stretch,
                     ends,
                     rows: found.rows,
-                });
+                };
+                let is_proven = !found.is_wide || self.converges(&look, rows);
+                let is_same = |one: &CloserLook| one.is_at(&look);
+                self.last.retain(|one| !is_same(one));
+                self.last.push(look.clone());
+                if found.is_sure && is_proven {
+                    let [lower, upper] = stretch;
+                    let is_there =
+                        |one: &(usize, f64)| one.0 == of.0 && (lower..=upper).contains(&one.1);
+                    self.unsure.retain(|one| !is_there(one));
+                }
+                return is_proven.then_some(look);
             }
             let wider = self.wider(stretch, self.span.step);
             if wider == stretch {
@@ -117,6 +136,25 @@ impl<'p, 'a> Closer<'p, 'a> {
             stretch = self.around_rows(rows, of.1, wider);
         }
         None
+    }
+
+    /// Whether a look shows what was seen there on coarser cells, and each of its rows is nearer to the row seen then
+    /// than errors of order one allow: errors that fall by the ratio r of the cells leave d / (r - 1) after a distance d,
+    /// of which the next grid takes the share (r - 1) / r.
+    fn converges(&self, look: &CloserLook, rows: &[Located]) -> bool {
+        let CellCheck::OnFinerCells { ratio } = self.work.source().subject().cell_check else {
+            return false;
+        };
+        let of_sweep = || rows.iter().filter(|row| look.holds(row)).collect();
+        let last = self.last.iter().find(|one| one.is_at(look));
+        let before: Vec<&Located> = last.map_or_else(of_sweep, |one| one.rows.iter().collect());
+        let mut pairs = before.iter().zip(&look.rows);
+        before.len() == look.rows.len()
+            && pairs.all(|(before, row)| {
+                let is_same = before.change() == row.change()
+                    && (before.before, before.after) == (row.before, row.after);
+                is_same && (before.value - row.value).abs() <= before.error * (ratio - 1.0) / ratio
+            })
     }
 
     /// What finer cells show in a stretch; `None` where there are none, or no work is left for them.
@@ -146,21 +184,33 @@ impl<'p, 'a> Closer<'p, 'a> {
             (&mut nobody, values.len()),
             self.options.largest_distance,
             None,
-        );
+        )
+        .needing_all();
         let options = Goal {
             is_closer: true,
             ..self.options.clone()
         };
         let walk = Walk::along(&work, &values, (span, options)).ok()?;
-        let (labels, ..) = walk.labels(self.cancellation, Vec::new());
-        self.left -= walk.points.len() as f64 * each;
         let is_whole = !work.has_ended() && !self.cancellation.is_cancelled();
+        // How many were solved before one that has no steady state depends on the number of threads.
+        let solved = if is_whole {
+            walk.points.len() as f64
+        } else {
+            values.len() as f64 + BEYOND
+        };
+        self.left -= solved * each;
+        if !is_whole {
+            return None;
+        }
+        let (labels, ..) = walk.labels(self.cancellation, Vec::new());
         let rows = labels.into_iter().filter_map(|label| match label {
             Label::Bifurcation(row) => Some(*row),
             _ => None,
         });
-        is_whole.then(|| Found {
+        Some(Found {
             rows: rows.collect(),
+            is_sure: walk.unsure.is_empty(),
+            is_wide: walk.points.iter().any(has_wide_cells),
             points: walk.points,
         })
     }
@@ -176,17 +226,21 @@ impl<'p, 'a> Closer<'p, 'a> {
         (1.0 - FACTORS) * finer.powi(axes as i32) + work_of_factors(finer, axes)
     }
 
-    /// Stretches around the rows of an observable that finer cells may tell better, apart from each other.
-    fn stretches(&self, rows: &[Located], observable: Observable) -> Vec<[f64; 2]> {
-        let mut found: Vec<[f64; 2]> = Vec::new();
-        for row in rows
+    /// Stretches around the rows of an observable that finer cells may tell better, and around values at which they may
+    /// tell whether a pair is there, apart from each other.
+    fn stretches(&self, rows: &[Located], of: (usize, Observable)) -> Vec<[f64; 2]> {
+        let in_doubt = rows
             .iter()
-            .filter(|row| row.observable == observable && is_of_cells(row))
-        {
-            let [lower, upper] = hull(row);
+            .filter(|row| row.observable == of.1 && is_of_cells(row));
+        let unsure = self.unsure.iter().filter(|one| one.0 == of.0);
+        let in_doubt = in_doubt.map(hull).chain(unsure.map(|one| [one.1; 2]));
+        let mut in_doubt: Vec<[f64; 2]> = in_doubt.collect();
+        in_doubt.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let mut found: Vec<[f64; 2]> = Vec::new();
+        for [lower, upper] in in_doubt {
             let margin = (0.25 * (upper - lower)).max(0.5 * self.span.step);
             let around = self.wider([lower, upper], margin);
-            let mut around = self.around_rows(rows, observable, around);
+            let mut around = self.around_rows(rows, of.1, around);
             while let Some(last) = found.pop_if(|last| last[1] >= around[0]) {
                 around = [last[0].min(around[0]), last[1].max(around[1])];
             }
@@ -241,11 +295,15 @@ impl<'p, 'a> Closer<'p, 'a> {
 struct Found {
     rows: Vec<Located>,
     points: Vec<Point>,
+    /// Whether finer cells tell at all of their values whether a pair is there.
+    is_sure: bool,
+    /// Whether they are wide themselves.
+    is_wide: bool,
 }
 
 impl Found {
-    /// What is counted at the ends of the stretch, if that is what the sweep counts there, all in between is seen on
-    /// cells that are narrow enough, and its errors are smaller than the sweep's. Where errors are larger, what is not
+    /// What is counted at the ends of the stretch, if that is what the sweep counts there, all in between is seen whole,
+    /// and its errors are smaller than the sweep's. Where errors are larger, what is not
     /// counted may be there all the same.
     fn continues(
         &self,
@@ -256,7 +314,6 @@ impl Found {
         let is_whole = |point: &Point| {
             let mut densities = point.densities.iter();
             point.report.status.is_resolved()
-                && !has_wide_cells(point)
                 && point.detections.iter().all(|one| one.is_seen)
                 && densities.all(|one| Doubt::of_negative(&one.density).is_none())
         };
@@ -277,85 +334,6 @@ impl Found {
         let ends = [below?, above?];
         (is_surer && self.points.iter().all(is_whole)).then_some(ends)
     }
-}
-
-/// What is counted in an observable at a value.
-fn counted<'p>(
-    mut points: impl Iterator<Item = &'p Point>,
-    value: f64,
-    place: usize,
-) -> Option<Signature> {
-    let point = points.find(|point| point.value == value)?;
-    Some(point.detections.get(place)?.signature)
-}
-
-/// What a closer look has found: the rows that take the place of those of the sweep in a stretch of it.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct CloserLook {
-    /// The density that was looked at.
-    pub observable: Observable,
-    /// The ends of the stretch, ascending, in units of the parameter: two values that the sweep has solved.
-    pub stretch: [f64; 2],
-    /// What the sweep counts there.
-    pub ends: [Signature; 2],
-    /// The rows between them, ascending.
-    pub rows: Vec<Located>,
-}
-
-impl CloserLook {
-    /// Takes the place of the rows of the stretch if nothing is in doubt then; whether it did.
-    fn replace(&self, rows: &mut Vec<Located>) -> bool {
-        let [lower, upper] = self.stretch;
-        let is_there = |row: &Located| {
-            row.observable == self.observable && (lower..=upper).contains(&row.value)
-        };
-        let is_located = |row: &Located| row.status() == BifurcationStatus::Located;
-        let was_located = rows.iter().filter(|row| is_there(row)).all(is_located);
-        let is_better = !was_located && self.rows.iter().all(is_located);
-        if is_better {
-            rows.retain(|row| !is_there(row));
-            rows.extend_from_slice(&self.rows);
-            rows.sort_by(|a, b| a.value.total_cmp(&b.value));
-        }
-        is_better
-    }
-}
-
-/// The rows of a sweep with those in the place of others that earlier looks of it have found.
-pub(super) fn with_looks(
-    labels: Vec<Label>,
-    looks: &[CloserLook],
-    (points, observables): (&[Point], &[Observable]),
-) -> Vec<Label> {
-    with_rows(labels, |rows| {
-        for look in looks {
-            let place = observables.iter().position(|one| *one == look.observable);
-            let ends = place.map(|place| {
-                look.stretch
-                    .map(|value| counted(points.iter(), value, place))
-            });
-            if ends == Some(look.ends.map(Some)) {
-                look.replace(rows);
-            }
-        }
-    })
-}
-
-/// Labelled points with their rows changed.
-fn with_rows(labels: Vec<Label>, change: impl FnOnce(&mut Vec<Located>)) -> Vec<Label> {
-    let (mut rows, mut others) = (Vec::new(), Vec::new());
-    for label in labels {
-        match label {
-            Label::Bifurcation(row) => rows.push(*row),
-            other => others.push(other),
-        }
-    }
-    change(&mut rows);
-    let rows = rows
-        .into_iter()
-        .map(|row| Label::Bifurcation(Box::new(row)));
-    label::number(others.into_iter().chain(rows).collect())
 }
 
 /// The largest error of densities, as a share of their mass.

@@ -53,6 +53,7 @@ mod label;
 mod levels;
 mod live;
 mod locate;
+mod look;
 pub mod map;
 pub(crate) mod measure;
 mod observer;
@@ -71,7 +72,6 @@ mod walk;
 mod wanted;
 
 pub(crate) use again::detect_again;
-pub use closer::CloserLook;
 pub use doubt::{BifurcationStatus, CheckedBy, Doubt, WiderRange};
 pub use error::SweepError;
 #[cfg(test)]
@@ -81,6 +81,7 @@ pub use fluctuations::Fluctuations;
 pub use grid::CheckedIndicator;
 pub use label::{Label, Located, RowWords, Zero};
 pub use levels::LevelCrossing;
+pub use look::CloserLook;
 pub use measure::{Measure, MeasureColumn, MeasureKind};
 pub use observer::Observer;
 pub use point::Point;

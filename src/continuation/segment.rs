@@ -27,6 +27,8 @@ pub(super) struct Work<'a> {
     told: Mutex<Listener<'a>>,
     /// Whether values were left out because the sweep is to end.
     ended: AtomicBool,
+    /// Whether it is of no use without all of its values.
+    needs_all: bool,
 }
 
 /// Whom points are told.
@@ -40,7 +42,10 @@ struct Listener<'a> {
 /// A point with the flanks of its densities.
 pub(super) struct Solved {
     pub(super) point: Point,
+    /// Those whose sign is sure.
     pub(super) flanks: Flanks,
+    /// Places of the observables of which one is not.
+    pub(super) unsure: Vec<usize>,
 }
 
 impl<'a> Work<'a> {
@@ -63,6 +68,15 @@ impl<'a> Work<'a> {
                 remaining: planned,
             }),
             ended: AtomicBool::new(false),
+            needs_all: false,
+        }
+    }
+
+    /// The same, ended by the first value that has no steady state.
+    pub(super) fn needing_all(self) -> Self {
+        Self {
+            needs_all: true,
+            ..self
         }
     }
 
@@ -113,10 +127,22 @@ impl<'a> Work<'a> {
         }
         let below = before.filter(|before| before.value < value);
         point.distance = below.and_then(|below| distance_between(below, &point));
+        if self.needs_all && !point.report.status.is_resolved() {
+            self.ended.store(true, Ordering::Relaxed);
+        }
         let densities = point.densities.iter();
-        let flanks = densities.map(|one| self.detector.flanks(one)).collect();
+        let flanks = densities.map(|one| self.detector.flanks(one));
+        let (flanks, unsure): (Flanks, Flanks) = flanks
+            .map(|all| all.into_iter().partition(|one| one.is_sure))
+            .unzip();
+        let unsure = (0..unsure.len()).filter(|&place| !unsure[place].is_empty());
+        let unsure = unsure.collect();
         self.tell(&point, is_given)?;
-        Ok(Some(Solved { point, flanks }))
+        Ok(Some(Solved {
+            point,
+            flanks,
+            unsure,
+        }))
     }
 
     /// Tells the observer of a stretch that is swept again on finer cells.

@@ -64,7 +64,7 @@ pub(crate) fn sweep_shard(
     let (labels, checks, mut unchecked) = walk.labels(cancellation, known);
     // What lies about the ends of a shard is known to the whole sweep alone.
     let (labels, looks) = if shard == Shard::WHOLE {
-        Closer::new((&work, span), &options, &walk.points, cancellation).labels(labels)
+        Closer::new((&work, span), &options, &walk, cancellation).labels(labels)
     } else {
         (labels, Vec::new())
     };

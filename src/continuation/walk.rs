@@ -34,6 +34,8 @@ pub(super) struct Walk<'a> {
     pub(super) points: Vec<Point>,
     /// One a point, in the same order.
     flanks: Vec<Flanks>,
+    /// Where cells cannot tell whether a pair of peak and saddle is there: places of observables, and values.
+    pub(super) unsure: Vec<(usize, f64)>,
 }
 
 impl<'a> Walk<'a> {
@@ -55,6 +57,7 @@ impl<'a> Walk<'a> {
             options,
             points: Vec::new(),
             flanks: Vec::new(),
+            unsure: Vec::new(),
         };
         walk.walk()?;
         walk.narrow(MOST_EXTRA.max(MOST_EXTRA_A_VALUE * values.len()))?;
@@ -70,6 +73,7 @@ impl<'a> Walk<'a> {
         let mut solved: Vec<Solved> = walked?.into_iter().flatten().collect();
         solved.sort_by(|a, b| a.point.value.total_cmp(&b.point.value));
         for one in solved {
+            self.note_unsure(&one);
             self.points.push(one.point);
             self.flanks.push(one.flanks);
         }
@@ -99,12 +103,19 @@ impl<'a> Walk<'a> {
 
     fn keep(&mut self, found: Vec<Vec<Solved>>) {
         for one in found.into_iter().flatten() {
+            self.note_unsure(&one);
             let value = one.point.value;
             let place = self.points.partition_point(|point| point.value < value);
             self.flanks.insert(place, one.flanks);
             self.points.insert(place, one.point);
             fill_distances(&mut self.points, place);
         }
+    }
+
+    fn note_unsure(&mut self, solved: &Solved) {
+        let value = solved.point.value;
+        self.unsure
+            .extend(solved.unsure.iter().map(|&place| (place, value)));
     }
 
     /// Solves further values, at most so many, until every change is as narrow as wanted, or as the data allow.

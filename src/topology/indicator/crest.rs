@@ -74,15 +74,17 @@ fn flanks(estimated: &EstimatedDensity, field: &Field<'_>, along: usize) -> Vec<
             let bend = (up + down) / axis.width(line).powi(2);
             let is_turn = (up >= 0.0 && down > 0.0) || (up <= 0.0 && down < 0.0);
             let errors = left.error + here.error + right.error;
-            let is_clear = (up + down).abs() > CLEAR * errors && here.slope.abs() > here.error;
+            let is_sure = (up + down).abs() > CLEAR * errors && here.slope.abs() > here.error;
+            let may_be_zero = here.slope.abs() <= CLEAR * here.error;
             let is_bent = bend.abs() > LEAST_BEND * here.curvature.powf(1.5);
-            if is_turn && is_clear && is_bent {
+            if is_turn && (is_sure || may_be_zero) && is_bent {
                 let rising = bend > 0.0;
                 found.push(Flank {
                     rising,
                     place: axis.centre(line),
                     value: if rising { here.slope } else { -here.slope },
                     line: 1 + along,
+                    is_sure,
                 });
             }
         }

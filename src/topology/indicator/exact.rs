@@ -14,6 +14,9 @@ pub struct Flank {
     pub value: f64,
     /// The line that it is on: 0 of a marginal and on a ray from a centre, 1 + k on a crest along the axis k.
     pub line: usize,
+    /// Whether a second scheme tells the sign of the slope, and that it has an extremum there. Where it does not, a pair
+    /// may be there or not.
+    pub is_sure: bool,
 }
 
 impl Flank {
@@ -23,6 +26,7 @@ impl Flank {
         let is_lowest = here <= left && here < right;
         (is_highest || is_lowest).then(|| Self {
             line: 0,
+            is_sure: true,
             rising: is_highest,
             place,
             value: if is_highest { here } else { -here },
@@ -80,6 +84,7 @@ pub(super) fn flanks(profile: &Profile) -> Vec<Flank> {
             rising: turn.is_largest,
             place: turn.place,
             line: 0,
+            is_sure: true,
             value: if turn.is_largest {
                 turn.slope
             } else {

@@ -204,6 +204,7 @@ fn kinks<'a>(
         };
         let flank = |jet: &Jet, rising: bool| Flank {
             line: 0,
+            is_sure: true,
             rising,
             place: kink.at,
             value: if rising { slope(jet) } else { -slope(jet) },
@@ -250,6 +251,7 @@ fn bends<'a>(
         let is_turn = above.value > least && rises(&below) != rises(&above);
         is_turn.then(|| Flank {
             line: 0,
+            is_sure: true,
             rising: rises(&below),
             place: kink.at,
             value: if rises(&below) { slope } else { -slope },
