@@ -3,12 +3,12 @@
 //!
 //! The stretch ends at values that the sweep has solved. What finer cells show takes the place of its rows where they
 //! count at both ends what the sweep counts there, so that the rows around it still follow from each other, and where
-//! they locate every change. Else still finer cells are asked, as often as [`super::LocateOptions::effort`] allows;
-//! what they leave in doubt as well stays as the sweep has it.
+//! they tell more of every change. Still finer cells are asked of what is not located, as often as
+//! [`super::LocateOptions::effort`] allows; what they leave in doubt as well stays as the sweep has it.
 //!
 //! Order one is all that is claimed of finer cells. Where they are wide themselves ([`super::Finding::WideCells`]) two
 //! grids may agree by chance: what they show is believed where a look before, on coarser cells, has shown the same, and
-//! each row has moved by no more than order one allows.
+//! each row has moved by no more than order one allows. Else values are told, and that more cells are needed.
 
 use super::doubt::MOST_TIMES;
 use super::label::{Label, Located};
@@ -111,7 +111,7 @@ impl<'p, 'a> Closer<'p, 'a> {
         for _ in 0..2 {
             let found = self.swept(of, stretch, times)?;
             if let Some(ends) = found.continues(&self.points, of.0, stretch) {
-                let look = CloserLook {
+                let mut look = CloserLook {
                     observable: of.1,
                     stretch,
                     ends,
@@ -121,13 +121,17 @@ impl<'p, 'a> Closer<'p, 'a> {
                 let is_same = |one: &CloserLook| one.is_at(&look);
                 self.last.retain(|one| !is_same(one));
                 self.last.push(look.clone());
-                if found.is_sure && is_proven {
+                if found.is_sure && !found.is_wide {
                     let [lower, upper] = stretch;
                     let is_there =
                         |one: &(usize, f64)| one.0 == of.0 && (lower..=upper).contains(&one.1);
                     self.unsure.retain(|one| !is_there(one));
                 }
-                return is_proven.then_some(look);
+                if !is_proven {
+                    look.doubt();
+                }
+                // That nothing happens is no more than what two grids may agree on by chance.
+                return (is_proven || !look.rows.is_empty()).then_some(look);
             }
             let wider = self.wider(stretch, self.span.step);
             if wider == stretch {
