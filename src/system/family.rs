@@ -105,7 +105,7 @@ impl Family {
     ///
     /// # Errors
     /// [`FixedPointFault`].
-    pub fn linearised(
+    pub(crate) fn linearised(
         &self,
         coordinate: f64,
         state: &[f64],

@@ -25,7 +25,7 @@ pub struct PassageQuestion {
 
 impl PassageQuestion {
     /// Whether it starts in the basin of a peak, or ends there.
-    pub fn has_basins(&self) -> bool {
+    pub(crate) fn has_basins(&self) -> bool {
         let start = match &self.start {
             PassageStart::Region(region) => region.basin(),
             PassageStart::State(_) | PassageStart::Density => None,

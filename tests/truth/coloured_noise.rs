@@ -364,8 +364,8 @@ fn where_no_affordable_number_of_modes_is_enough_no_change_is_located() {
     // The noise remembers longer than x does, so that x nearly follows it: each pair of nodes has a peak of its own.
     let text = "[system]\nmodel = \"bistable\"\nnoise = { kind = \"harmonic\" }\n\
          [system.parameters]\na = 0.3\nsigma2 = 0.3\nnoise_damping = 0.3\n\
-         [sweep]\nparameter = \"noise_frequency\"\nfrom = 2\nto = 4\npoints = 3\n\
-         [cells]\nx = { from = -2.4, to = 2.4, count = 48 }\n";
+         [sweep]\nparameter = \"noise_frequency\"\nfrom = 2\nto = 4\npoints = 2\n\
+         [cells]\nx = { from = -2.4, to = 2.4, count = 40 }\n";
     let (_, found) = swept(text, "");
     for point in &found.points {
         let mut findings = point.report.findings.iter();

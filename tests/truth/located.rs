@@ -81,7 +81,7 @@ fn rows(
     };
     rows_of(
         Arc::new(model),
-        observable,
+        &[observable],
         ends,
         points,
         axes,
@@ -91,7 +91,7 @@ fn rows(
 
 fn rows_of(
     model: Arc<Model>,
-    observable: Observable,
+    observables: &[Observable],
     ends: (f64, f64),
     points: usize,
     axes: Vec<Axis>,
@@ -99,10 +99,12 @@ fn rows_of(
 ) -> (SweepResult, Vec<Located>) {
     let path = Path::parameter("theta", ends.0, ends.1);
     let family = Family::new(model, &[], path).unwrap();
-    let problem = Problem::new(family, CellSpace::new(axes).unwrap(), vec![observable]).unwrap();
+    let space = CellSpace::new(axes).unwrap();
+    let problem = Problem::new(family, space, observables.to_vec()).unwrap();
     let options = GeneratorMethodOptions::default();
     let source = GeneratorSource::new(&problem, &options).unwrap();
-    let detector = PersistenceDetector::new(DetectOptions::default(), points);
+    let looks = points * observables.len();
+    let detector = PersistenceDetector::new(DetectOptions::default(), looks);
     let result = sweep(
         &source,
         &detector,
@@ -114,6 +116,14 @@ fn rows_of(
     .unwrap();
     let rows = result.bifurcations().cloned().collect();
     (result, rows)
+}
+
+/// The rows of each of these observables.
+fn each_of<const N: usize>(rows: &[Located], observables: [Observable; N]) -> [Vec<Located>; N] {
+    observables.map(|observable| {
+        let own = rows.iter().filter(|row| row.observable == observable);
+        own.cloned().collect()
+    })
 }
 
 fn words(rows: &[Located]) -> String {
@@ -262,15 +272,16 @@ fn with_quadratic_friction() -> Arc<Model> {
 #[test]
 fn a_split_at_a_place_where_the_curvature_of_the_drift_jumps_is_held_by_its_error() {
     let axis = |cells| Axis::uniform(-2.7, 2.7, cells).unwrap();
-    for observable in [Observable::Marginal(1), Observable::Joint(0, 1)] {
-        let (_, rows) = rows_of(
-            with_quadratic_friction(),
-            observable,
-            (-0.713, 0.687),
-            8,
-            vec![axis(60), axis(60)],
-            &LocateOptions::default(),
-        );
+    let watched = [Observable::Marginal(1), Observable::Joint(0, 1)];
+    let (_, rows) = rows_of(
+        with_quadratic_friction(),
+        &watched,
+        (-0.713, 0.687),
+        8,
+        vec![axis(60), axis(60)],
+        &LocateOptions::default(),
+    );
+    for rows in each_of(&rows, watched) {
         assert_eq!(rows.len(), 1, "{}", words(&rows));
         assert!(rows[0].value.abs() <= rows[0].error, "{}", words(&rows));
         assert!(rows[0].value.abs() < 5e-3, "{}", words(&rows));
@@ -288,22 +299,22 @@ fn a_spring_whose_preload_changes_its_sign_splits_the_density_there() {
         .with_parameters(["theta"])
         .build()
         .unwrap();
-    let axes = || vec![(-4.0, 4.0, 48), (-3.5, 3.5, 40)];
-    for observable in [Observable::Marginal(0), Observable::Joint(0, 1)] {
-        let axes = axes().into_iter();
-        let axes = axes.map(|(from, to, count)| Axis::uniform(from, to, count).unwrap());
-        let (result, rows) = rows_of(
-            model.clone(),
-            observable,
-            (-0.53, 0.61),
-            8,
-            axes.collect(),
-            &LocateOptions::default(),
-        );
+    let axes = [(-4.0, 4.0, 48), (-3.5, 3.5, 40)];
+    let axes = axes.map(|(from, to, count)| Axis::uniform(from, to, count).unwrap());
+    let watched = [Observable::Marginal(0), Observable::Joint(0, 1)];
+    let (result, rows) = rows_of(
+        model,
+        &watched,
+        (-0.53, 0.61),
+        8,
+        axes.to_vec(),
+        &LocateOptions::default(),
+    );
+    for (observable, rows) in each_of(&rows, watched).into_iter().enumerate() {
         // The kink's slope follows from the equations: its sign is that of the preload on any cells.
         assert_located(&rows, &[0.0], 1.14);
         assert!(rows[0].value.abs() < 1e-9, "{}", words(&rows));
-        let kink = &result.points[7].densities[0].structure.kinks[0];
+        let kink = &result.points[7].densities[observable].structure.kinks[0];
         let (theta, middle) = (result.points[7].value, kink.jump.len() / 2);
         let exact = -4.0 * theta * 0.5 / 0.49;
         // Its size is read from cells a quarter as wide as the density along y: differences of second order, (h/σ_y)² =
@@ -353,8 +364,8 @@ fn with_bent_noise(drift: &str, noise: &str, (from, to): (f64, f64)) -> Vec<Loca
         .unwrap();
     let axes = vec![Axis::uniform(from, to, 200).unwrap()];
     let options = LocateOptions::default();
-    let watched = Observable::Marginal(0);
-    rows_of(model, watched, (-1.013, 0.987), 41, axes, &options).1
+    let watched = [Observable::Marginal(0)];
+    rows_of(model, &watched, (-1.013, 0.987), 41, axes, &options).1
 }
 
 #[test]
@@ -395,7 +406,7 @@ fn without_the_check_on_finer_cells_nothing_is_located() {
     let axes = axes.map(|(from, to, count)| Axis::uniform(from, to, count).unwrap());
     let (_, rows) = rows_of(
         model,
-        Observable::Marginal(0),
+        &[Observable::Marginal(0)],
         (-0.5, 0.5),
         11,
         axes.to_vec(),
@@ -438,12 +449,12 @@ fn a_jump_that_moves_through_the_cells_leaves_no_value_located() {
         .with_parameters(["theta"])
         .build()
         .unwrap();
-    for observable in [Observable::Marginal(1), Observable::Joint(0, 1)] {
-        let axis = || Axis::uniform(-3.1, 3.1, 70).unwrap();
-        let ends = (0.111, 0.887);
-        let axes = vec![axis(), axis()];
-        let options = LocateOptions::default();
-        let (_, rows) = rows_of(model.clone(), observable, ends, 14, axes, &options);
+    let axis = || Axis::uniform(-3.1, 3.1, 70).unwrap();
+    let ends = (0.111, 0.887);
+    let (axes, options) = (vec![axis(), axis()], LocateOptions::default());
+    let watched = [Observable::Marginal(1), Observable::Joint(0, 1)];
+    let (_, rows) = rows_of(model, &watched, ends, 9, axes, &options);
+    for rows in each_of(&rows, watched) {
         assert!(!rows.is_empty());
         for row in &rows {
             let status = row.status();

@@ -3,6 +3,7 @@
 
 use std::sync::OnceLock;
 
+use miniz_oxide::inflate::decompress_to_vec_zlib;
 use ttf_parser::{Face, GlyphId};
 
 use super::look::Look;
@@ -48,26 +49,28 @@ impl Font {
         }
     }
 
-    fn data(self) -> &'static [u8] {
+    /// The file of the font, version 2.37, as it comes with the program: deflated to half its size.
+    fn deflated(self) -> &'static [u8] {
         match self {
-            Self::Sans => dejavu::sans::regular(),
-            Self::SansOblique => dejavu::sans::oblique(),
-            Self::SansBold => dejavu::sans::bold(),
-            Self::Serif => dejavu::serif::regular(),
-            Self::SerifItalic => dejavu::serif::italic(),
-            Self::SerifBold => dejavu::serif::bold(),
+            Self::Sans => include_bytes!("fonts/DejaVuSans.ttf.z"),
+            Self::SansOblique => include_bytes!("fonts/DejaVuSans-Oblique.ttf.z"),
+            Self::SansBold => include_bytes!("fonts/DejaVuSans-Bold.ttf.z"),
+            Self::Serif => include_bytes!("fonts/DejaVuSerif.ttf.z"),
+            Self::SerifItalic => include_bytes!("fonts/DejaVuSerif-Italic.ttf.z"),
+            Self::SerifBold => include_bytes!("fonts/DejaVuSerif-Bold.ttf.z"),
         }
     }
 
-    /// The font, read. All that come with the program can be.
+    /// The font, inflated and read when it is first asked for. All that come with the program can be.
     pub(super) fn face(self) -> Option<&'static Face<'static>> {
-        static FACES: OnceLock<Vec<Option<Face<'static>>>> = OnceLock::new();
-        let read = || {
-            Self::ALL
-                .map(|font| Face::parse(font.data(), 0).ok())
-                .into()
-        };
-        FACES.get_or_init(read).get(self as usize)?.as_ref()
+        static FILES: [OnceLock<Vec<u8>>; Font::ALL.len()] =
+            [const { OnceLock::new() }; Font::ALL.len()];
+        static FACES: [OnceLock<Option<Face<'static>>>; Font::ALL.len()] =
+            [const { OnceLock::new() }; Font::ALL.len()];
+        let inflated = || decompress_to_vec_zlib(self.deflated()).unwrap_or_default();
+        let file = FILES.get(self as usize)?.get_or_init(inflated);
+        let face = FACES.get(self as usize)?;
+        face.get_or_init(|| Face::parse(file, 0).ok()).as_ref()
     }
 }
 
@@ -271,6 +274,20 @@ pub(crate) fn wrap(look: &Look, markup: &str, size: f64, width: f64) -> Vec<Stri
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn fonts_are_whole() {
+        // The numbers of four bytes of a font file add up to this one.
+        for font in Font::ALL {
+            let file = decompress_to_vec_zlib(font.deflated()).unwrap();
+            let sum = file.chunks(4).fold(0_u32, |sum, bytes| {
+                let mut number = [0; 4];
+                number[..bytes.len()].copy_from_slice(bytes);
+                sum.wrapping_add(u32::from_be_bytes(number))
+            });
+            assert_eq!(sum, 0xb1b0_afba, "{font:?}");
+        }
+    }
 
     #[test]
     fn widths_are_those_of_the_font() {

@@ -69,7 +69,7 @@ impl RateSolver {
 
     /// The solver with a token that is looked at in every front of a factorisation and in every iteration.
     #[must_use]
-    pub fn cancelled_by(self, cancellation: &Cancellation) -> Self {
+    pub(crate) fn cancelled_by(self, cancellation: &Cancellation) -> Self {
         Self {
             plain: self.plain.cancelled_by(cancellation),
             half: None,

@@ -69,7 +69,7 @@ impl Options {
 
     /// The settings with a token that ends the solve.
     #[must_use]
-    pub fn cancelled_by(self, cancellation: &Cancellation) -> Self {
+    pub(crate) fn cancelled_by(self, cancellation: &Cancellation) -> Self {
         let cancellation = cancellation.clone();
         Self {
             cancellation,
