@@ -121,12 +121,12 @@ mod tests {
 
     #[test]
     fn a_damped_particle_is_known_by_its_form_alone() {
-        let found = particle(["y", "x - x^3 - g y"], ["0", "sqrt(2 g 0.1)"]).unwrap();
+        let found = particle(["y", "x - x^3 - g y"], ["0", "sqrt(0.2 g)"]).unwrap();
         assert_eq!((found.position, found.damping), (0, 0.5));
         assert!((found.temperature - 0.1).abs() < 1e-15);
         assert!((found.force(2.0) + 6.0).abs() < 1e-14);
         assert!((found.curvature(2.0) - 11.0).abs() < 1e-14);
-        let turned = particle(["-sin(y) - 2 g x", "x"], ["0.3", "0"]).unwrap();
+        let turned = particle(["-sin(y) - 2*g*x", "x"], ["0.3", "0"]).unwrap();
         assert_eq!((turned.position, turned.damping), (1, 1.0));
         for (drift, noise) in [
             (["y", "x - g y^3"], ["0", "1"]),
