@@ -262,8 +262,8 @@ y = "sqrt(2 g T)"
 T = {temperature}
 [sweep]
 parameter = "g"
-from = 0.2
-to = 0.5
+from = 0.5
+to = 0.6
 points = 2
 [cells]
 x = {{ from = -2.2, to = 2.2, count = 72 }}
