@@ -3,8 +3,8 @@
 //! With ω_A² the curvature of the potential at the bottom, -ω_b² that at the top, ΔV the height and T the temperature,
 //! H. A. Kramers (1940) has the rate κ ω_A/(2π) e^{-ΔV/T} with κ = √(1 + g²/(4 ω_b²)) - g/(2 ω_b), which is too much
 //! where damping is weak: there, energy comes in too slowly to fill the states near the top. V. I. Mel'nikov and S. V.
-//! Meshkov (1986) multiply by A(δ_A) A(δ_B)/A(δ_A + δ_B), where δ is the energy, over T, that is lost in one turn at the
-//! height of the barrier in either well, g ∮ y dx/T, and
+//! Meshkov (1986) multiply by A(δ_A) A(δ_B)/A(δ_A + δ_B), where δ is the energy, over T, that is lost in one turn at
+//! the height of the barrier in either well, g ∮ y dx/T, and
 //! ln A(δ) = 1/(2π) ∫ ln(1 - e^{-δ (λ² + 1/4)}) dλ/(λ² + 1/4).
 //! What both leave out is of the order of T/ΔV.
 

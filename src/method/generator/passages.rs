@@ -21,8 +21,8 @@ use crate::system::{FieldQuestion, Model, ParameterValues, PassageQuestion, Regi
 const TOLERANCE: f64 = 1e-4;
 
 /// Adds the numbers of all passages at a value to a report, with findings where there are none. `density` is
-/// the steady state, with what is watched of it, in which regions may be found. `memory` is what the passages of another
-/// value have left, one a question.
+/// the steady state, with what is watched of it, in which regions may be found. `memory` is what the passages of
+/// another value have left, one a question.
 ///
 /// # Errors
 /// [`MethodError::Cancelled`], and errors of values that the family does not have.
