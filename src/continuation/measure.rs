@@ -103,6 +103,16 @@ pub(crate) const PASSAGE_THERE: MeasureKind = of_passage(
 );
 pub(crate) const PASSAGE_BACK: MeasureKind =
     of_passage("return_rate", "1/t", "the rate back, of the slowest mode");
+pub(crate) const PASSAGE_KRAMERS: MeasureKind = of_passage(
+    "kramers",
+    "1/t",
+    "rate from the first to the second of two states by Kramers' formula for moderate and strong damping",
+);
+pub(crate) const PASSAGE_MELNIKOV: MeasureKind = of_passage(
+    "melnikov",
+    "1/t",
+    "the same with Mel'nikov and Meshkov's factor, for all damping",
+);
 pub(crate) const PASSAGE_QUANTILE: MeasureKind = of_passage(
     "quantile",
     "t",

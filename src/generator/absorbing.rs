@@ -24,7 +24,7 @@ use crate::MAX_DIMENSION;
 use crate::space::CellSpace;
 use crate::system::{BoundQuantity, LANES, Lanes, System};
 pub(crate) use border::lagrange;
-use border::{Beyond, Border, GridLine};
+use border::{Border, GridLine};
 
 /// A part of the rate at which a process ends from a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -96,6 +96,17 @@ impl AbsorbingGenerator {
     }
 }
 
+/// What another generator on the same cells differs by.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct RateChange {
+    /// Changes of entries of Q, any number of them for a place, which sum.
+    pub rates: Vec<(usize, usize, f64)>,
+    /// Changes of the rates at which the process ends from a cell.
+    pub ends: Vec<f64>,
+    /// Parts of those.
+    pub endings: Vec<Ending>,
+}
+
 /// How stencils go on past a border. What the two differ by is an error of the border.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Closure {
@@ -103,6 +114,15 @@ pub(crate) enum Closure {
     Fourth,
     /// By a polynomial through three cells.
     Third,
+}
+
+impl Closure {
+    fn cells(self) -> usize {
+        match self {
+            Self::Fourth => 4,
+            Self::Third => 3,
+        }
+    }
 }
 
 /// Assembles the generator of a process that ends where `level` becomes negative.
@@ -116,6 +136,39 @@ pub(crate) fn assemble_absorbing(
     options: &GeneratorOptions,
     (dissipation, closure): (Dissipation, Closure),
 ) -> Result<AbsorbingGenerator, GeneratorError> {
+    let closed = assemble_closed(
+        system,
+        space,
+        level,
+        options,
+        (dissipation, &[closure.cells()]),
+    );
+    Ok(closed?.0)
+}
+
+/// The same with [`Closure::Fourth`], and what [`Closure::Third`] changes.
+///
+/// # Errors
+/// As [`assemble_absorbing`].
+pub(crate) fn assemble_with_border_change(
+    system: &dyn System,
+    space: &CellSpace,
+    level: &BoundQuantity,
+    options: &GeneratorOptions,
+    dissipation: Dissipation,
+) -> Result<(AbsorbingGenerator, RateChange), GeneratorError> {
+    let both = [Closure::Fourth, Closure::Third].map(Closure::cells);
+    assemble_closed(system, space, level, options, (dissipation, &both))
+}
+
+/// The generator whose stencils go on past the border by the first number of cells, and what the second one changes.
+fn assemble_closed(
+    system: &dyn System,
+    space: &CellSpace,
+    level: &BoundQuantity,
+    options: &GeneratorOptions,
+    (dissipation, cells): (Dissipation, &[usize]),
+) -> Result<(AbsorbingGenerator, RateChange), GeneratorError> {
     check(system, space)?;
     let geometry = |axis| AxisGeometry::damped(system, axis, space, options, dissipation);
     let axes: Vec<AxisGeometry> = (0..space.dimension()).map(geometry).collect();
@@ -126,18 +179,14 @@ pub(crate) fn assemble_absorbing(
         level,
         axes: &axes,
         strides: &strides,
-        cells: match closure {
-            Closure::Fourth => 4,
-            Closure::Third => 3,
-        },
+        cells,
         levels: levels(space, level)?,
     };
     let weight = |cell: usize| f64::from(u8::from(border.keeps(cell)));
     let mut assembly = Assembly {
         weights: [0; 2].map(|_| (0..space.n_cells()).map(weight).collect()),
-        ends: vec![0.0; space.n_cells()],
-        entries: Vec::new(),
-        endings: Vec::new(),
+        whole: RateChange::new(space.n_cells(), STENCIL * axes.len() * space.n_cells()),
+        change: RateChange::new(space.n_cells(), 0),
         border,
     };
     for axis in 0..axes.len() {
@@ -154,6 +203,56 @@ pub(crate) fn assemble_absorbing(
         }
     }
     assembly.generator()
+}
+
+/// Entries that the faces of a cell along an axis give.
+const STENCIL: usize = 4 * REACH;
+
+impl RateChange {
+    fn new(cells: usize, entries: usize) -> Self {
+        Self {
+            rates: Vec::with_capacity(entries),
+            ends: vec![0.0; cells],
+            endings: Vec::new(),
+        }
+    }
+
+    /// Adds a flux out of a cell through a face of a stretch.
+    fn add(&mut self, stretch: &Stretch<'_>, source: usize, face: usize, flux: f64) {
+        let (line, (from, to)) = (stretch.line, stretch.range);
+        if face > from {
+            self.rates.push((line.at(face - 1), source, -flux));
+        } else {
+            let cell = line.at(from.saturating_sub(1));
+            let end = (from == 0).then_some((line.axis, false));
+            self.finish(cell, end, source, -flux);
+        }
+        if face < to {
+            self.rates.push((line.at(face), source, flux));
+        } else {
+            let end = (to == stretch.count).then_some((line.axis, true));
+            let cell = line.at(to.min(stretch.count - 1));
+            self.finish(cell, end, source, flux);
+        }
+    }
+
+    /// Adds a part of the rate at which the process ends from a cell.
+    fn finish(&mut self, cell: usize, end: Option<(usize, bool)>, source: usize, rate: f64) {
+        self.ends[source] += rate;
+        self.endings.push(Ending {
+            cell,
+            end,
+            source,
+            rate,
+        });
+    }
+}
+
+/// Cells `range.0..range.1` of a line of `count` that lie outside of the region.
+struct Stretch<'a> {
+    line: &'a GridLine,
+    range: (usize, usize),
+    count: usize,
 }
 
 /// The level function at the nodes of all cells.
@@ -184,9 +283,9 @@ pub(crate) fn levels(space: &CellSpace, level: &BoundQuantity) -> Result<Vec<f64
 /// The matrix in the making.
 struct Assembly<'a> {
     border: Border<'a>,
-    entries: Vec<(usize, usize, f64)>,
-    ends: Vec<f64>,
-    endings: Vec<Ending>,
+    /// The generator, and what going on past the border in the second way changes of it.
+    whole: RateChange,
+    change: RateChange,
     weights: [Vec<f64>; 2],
 }
 
@@ -209,7 +308,12 @@ impl Assembly<'_> {
                 }
                 let inside = (from..count).find(|&at| !self.border.keeps(line.at(at)));
                 let to = inside.unwrap_or(count);
-                self.stretch(&line, (from, to), count, fluxes);
+                let stretch = Stretch {
+                    line: &line,
+                    range: (from, to),
+                    count,
+                };
+                self.stretch(&stretch, fluxes);
                 from = to;
             }
         }
@@ -220,17 +324,16 @@ impl Assembly<'_> {
         (self.border.axes[axis].count(), self.border.strides[axis])
     }
 
-    /// Adds the fluxes of a stretch of cells, `from..to` along a line of `count`.
-    fn stretch(
-        &mut self,
-        line: &GridLine,
-        (from, to): (usize, usize),
-        count: usize,
-        fluxes: &[Window],
-    ) {
+    /// Adds the fluxes of a stretch of cells.
+    fn stretch(&mut self, stretch: &Stretch<'_>, fluxes: &[Window]) {
+        let (line, (from, to)) = (stretch.line, stretch.range);
         let lower = (from > 0).then(|| self.border.beyond(line, (from, to), false));
-        let upper = (to < count).then(|| self.border.beyond(line, (from, to), true));
-        for (position, changes) in lower.iter().chain(&upper).flat_map(|end| &end.weights) {
+        let upper = (to < stretch.count).then(|| self.border.beyond(line, (from, to), true));
+        let first = [&lower, &upper]
+            .into_iter()
+            .flatten()
+            .filter_map(|ways| ways.first());
+        for (position, changes) in first.flat_map(|end| &end.weights) {
             for (weights, change) in self.weights.iter_mut().zip(changes) {
                 weights[line.at(*position)] += change;
             }
@@ -242,68 +345,29 @@ impl Assembly<'_> {
                 }
                 // A stencil has weights on cells of the line alone.
                 let position = face + k - REACH;
-                let one = [(position, 1.0)];
-                let far = |end: &'_ Option<Beyond>, cells: usize| -> Vec<(usize, f64)> {
-                    end.as_ref()
-                        .map_or_else(Vec::new, |end| end.read[cells].clone())
-                };
-                let beyond;
-                let read: &[(usize, f64)] = if position < from {
-                    beyond = far(&lower, from - position - 1);
-                    &beyond
+                let (end, cells) = if position < from {
+                    (&lower, from - position - 1)
                 } else if position >= to {
-                    beyond = far(&upper, position - to);
-                    &beyond
+                    (&upper, position - to)
                 } else {
-                    &one
+                    self.whole.add(stretch, line.at(position), face, weight);
+                    continue;
                 };
-                for &(source, share) in read {
-                    self.add(
-                        line,
-                        line.at(source),
-                        face,
-                        (from, to, count),
-                        weight * share,
-                    );
+                let ways = end.as_deref().unwrap_or_default();
+                for (way, beyond) in ways.iter().enumerate() {
+                    for &(source, share) in &beyond.read[cells] {
+                        let (source, flux) = (line.at(source), weight * share);
+                        if way == 0 {
+                            self.whole.add(stretch, source, face, flux);
+                        }
+                        if ways.len() > 1 {
+                            let flux = if way == 0 { -flux } else { flux };
+                            self.change.add(stretch, source, face, flux);
+                        }
+                    }
                 }
             }
         }
-    }
-
-    /// Adds a flux out of a cell through a face.
-    fn add(
-        &mut self,
-        line: &GridLine,
-        source: usize,
-        face: usize,
-        (from, to, count): (usize, usize, usize),
-        flux: f64,
-    ) {
-        if face > from {
-            self.entries.push((line.at(face - 1), source, -flux));
-        } else {
-            let cell = line.at(from.saturating_sub(1));
-            let end = (from == 0).then_some((line.axis, false));
-            self.finish(cell, end, source, -flux);
-        }
-        if face < to {
-            self.entries.push((line.at(face), source, flux));
-        } else {
-            let end = (to == count).then_some((line.axis, true));
-            let cell = line.at(to.min(count - 1));
-            self.finish(cell, end, source, flux);
-        }
-    }
-
-    /// Adds a part of the rate at which the process ends from a cell.
-    fn finish(&mut self, cell: usize, end: Option<(usize, bool)>, source: usize, rate: f64) {
-        self.ends[source] += rate;
-        self.endings.push(Ending {
-            cell,
-            end,
-            source,
-            rate,
-        });
     }
 
     /// Adds the rates between modes where their places are kept.
@@ -318,32 +382,35 @@ impl Assembly<'_> {
                 let source = first + from * stride;
                 let others = rates.iter().enumerate().filter(|(to, _)| *to != from);
                 for (to, &rate) in others {
-                    self.entries.push((first + to * stride, source, rate));
-                    self.entries.push((source, source, -rate));
+                    self.whole.rates.push((first + to * stride, source, rate));
+                    self.whole.rates.push((source, source, -rate));
                 }
             }
         }
     }
 
-    /// The generator, with the cells inside the region on their own.
-    fn generator(mut self) -> Result<AbsorbingGenerator, GeneratorError> {
-        let cells = self.ends.len();
+    /// The generator, with the cells inside the region on their own, and what the second way changes.
+    fn generator(self) -> Result<(AbsorbingGenerator, RateChange), GeneratorError> {
+        let mut whole = self.whole;
+        let cells = whole.ends.len();
         let kept: Vec<bool> = (0..cells).map(|cell| self.border.keeps(cell)).collect();
-        if !self.entries.iter().all(|(_, _, rate)| rate.is_finite()) {
+        if !whole.rates.iter().all(|(_, _, rate)| rate.is_finite()) {
             return Err(GeneratorError::Overflow { axis: 0 });
         }
-        let on_diagonal = self.entries.iter().filter(|(row, column, _)| row == column);
+        let on_diagonal = whole.rates.iter().filter(|(row, column, _)| row == column);
         let diagonal = on_diagonal.fold(0.0f64, |most, (_, _, rate)| most.max(rate.abs()));
         let diagonal = if diagonal > 0.0 { diagonal } else { 1.0 };
         let inside = (0..cells).filter(|&cell| !kept[cell]);
-        self.entries
+        whole
+            .rates
             .extend(inside.map(|cell| (cell, cell, -diagonal)));
-        Ok(AbsorbingGenerator {
-            rates: self.entries,
+        let generator = AbsorbingGenerator {
+            rates: whole.rates,
             kept,
-            ends: self.ends,
-            endings: self.endings,
+            ends: whole.ends,
+            endings: whole.endings,
             weights: self.weights,
-        })
+        };
+        Ok((generator, self.change))
     }
 }

@@ -3,6 +3,7 @@
 use super::start::at_nodes_of;
 use super::{Passage, Start};
 use crate::density::Roughness;
+use crate::generator::{GeneratorError, levels};
 use crate::space::CellSpace;
 
 /// A steady state on the cells of a sweep, as it is known to a solve.
@@ -29,7 +30,8 @@ impl KnownDensity<'_> {
 pub(super) struct DensityStart<'a> {
     density: KnownDensity<'a>,
     changes: &'a [f64],
-    passage: &'a Passage,
+    /// Levels of the target at the nodes of the density's cells, and of the region of the start.
+    levels: [Vec<f64>; 2],
     /// The cells of the density.
     space: &'a CellSpace,
     /// The cells on which the passage is solved, and which of them are kept.
@@ -38,27 +40,35 @@ pub(super) struct DensityStart<'a> {
 
 impl<'a> DensityStart<'a> {
     /// `None` where the start is a state, or its density has all its digits.
+    ///
+    /// # Errors
+    /// [`GeneratorError::NotFinite`] for levels that have no value at a node.
     pub(super) fn new(
         passage: &'a Passage,
         density: KnownDensity<'a>,
         space: &'a CellSpace,
         cells: (&'a CellSpace, &'a [bool]),
-    ) -> Option<Self> {
-        matches!(passage.start, Start::Density(_)).then_some(Self {
+    ) -> Result<Option<Self>, GeneratorError> {
+        let is_spread = matches!(passage.start, Start::Density(_));
+        let Some(changes) = density.changes.filter(|_| is_spread) else {
+            return Ok(None);
+        };
+        Ok(Some(Self {
             density,
-            changes: density.changes?,
-            passage,
+            changes,
+            levels: [levels(space, &passage.until)?, passage.start_levels(space)?],
             space,
             cells,
-        })
+        }))
     }
 
     /// Error of the average over the start of a field that is known at the kept cells: what the second discretisation
     /// changes, and what its changes would do were those of neighbouring layers of cells independent.
     pub(super) fn error(&self, field: &[f64]) -> f64 {
         let space = self.space;
-        let field = at_nodes_of(space, self.cells, &self.passage.until, field);
-        let starts = |cell: usize| self.passage.start_level(&space.node(cell)) < 0.0;
+        let [target, start] = &self.levels;
+        let field = at_nodes_of(space, self.cells, target, field);
+        let starts = |cell: usize| start[cell] < 0.0;
         let inside = |(cell, value): (usize, Option<f64>)| value.filter(|_| starts(cell));
         let field: Vec<Option<f64>> = field.into_iter().enumerate().map(inside).collect();
         let weighed = || field.iter().zip(self.density.unknowns);

@@ -1,7 +1,7 @@
 //! Shares of the processes that end by entering each part of a target.
 
 use super::{Passage, dot};
-use crate::generator::{AbsorbingGenerator, Ending};
+use crate::generator::Ending;
 use crate::space::CellSpace;
 use crate::system::BoundQuantity;
 
@@ -31,10 +31,10 @@ impl<'a> Exits<'a> {
         least.map(|(part, _)| part)
     }
 
-    /// For each part, the rates at which a process comes to it from the cells.
-    pub(super) fn rates(&self, generator: &AbsorbingGenerator) -> Vec<Vec<f64>> {
+    /// For each part, the rates at which a process comes to it from the cells, of those at which it ends.
+    pub(super) fn rates(&self, endings: &[Ending]) -> Vec<Vec<f64>> {
         let mut rates = vec![vec![0.0; self.space.n_cells()]; self.parts.len()];
-        for ending in &generator.endings {
+        for ending in endings.iter().filter(|_| !self.parts.is_empty()) {
             if let Some(part) = self.part(ending) {
                 rates[part][ending.source] += ending.rate;
             }

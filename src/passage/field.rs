@@ -155,7 +155,7 @@ impl FieldQuestion<'_> {
         };
         let exits = Exits::new(&passage, &space);
         let gain = |generator: &AbsorbingGenerator| match self.target.part {
-            Some(part) => exits.rates(generator).swap_remove(part),
+            Some(part) => exits.rates(&generator.endings).swap_remove(part),
             None => generator.weights[0].clone(),
         };
         let kept = full.kept.iter().filter(|&&kept| kept).count() as f64;
@@ -204,7 +204,7 @@ impl FieldQuestion<'_> {
                 let found = beside_border(system, (&space, until), state, inner, on_border);
                 found.or_else(|| at_state(kept, state, NODES, field))
             };
-            at_states_of(&places, kept, until, field, near)
+            at_states_of(&places, kept, |_, state| until.at(state) < 0.0, field, near)
         };
         Ok(OnGrid {
             values: at(&values, &|state| self.inside(state)),

@@ -49,6 +49,7 @@
 //! | its density, from one grid to another | `lasting.rs` |
 //! | probabilities at times, and quantiles | `survival.rs` |
 //! | numbers with errors | `timed.rs` |
+//! | what is handed from value to value | `memory.rs` |
 //! | numbers as fields over the start | `field.rs` |
 //! | the same beside a border | `rim.rs` |
 
@@ -57,6 +58,7 @@ mod density_start;
 mod exits;
 mod field;
 mod lasting;
+mod memory;
 mod nodes;
 mod rate;
 mod rim;
@@ -69,7 +71,8 @@ mod timed;
 
 pub use density_start::KnownDensity;
 pub use field::{FieldTarget, PassageField, field};
-pub use timed::{Timed, WithError, timed};
+pub use memory::PassageMemory;
+pub use timed::{Timed, WithError, timed, timed_from};
 
 use crate::generator::{GeneratorError, levels};
 use crate::space::{CellSpace, SpaceError};

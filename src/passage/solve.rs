@@ -6,6 +6,7 @@ use super::cells::{PassageCells, cells};
 use super::density_start::DensityStart;
 use super::exits::{Exits, rate_change as entry_change};
 use super::lasting::Lasting;
+use super::memory::GridMemory;
 use super::nodes::{FEWER_NODES, NODES};
 use super::rate::slowest;
 use super::spread::add_density;
@@ -14,7 +15,8 @@ use super::survival::{Survival, models};
 use super::{KnownDensity, Passage, PassageError, Start, dot};
 use crate::cancellation::Cancellation;
 use crate::generator::{
-    AbsorbingGenerator, Closure, Dissipation, GeneratorOptions, assemble_absorbing,
+    AbsorbingGenerator, Closure, Dissipation, GeneratorOptions, RateChange, assemble_absorbing,
+    assemble_with_border_change,
 };
 use crate::space::CellSpace;
 use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, Expected, RateOptions};
@@ -63,21 +65,21 @@ impl Question<'_> {
         &self,
         factor: f64,
         other: Option<&Lasting>,
+        memory: &GridMemory,
     ) -> Result<Solved, PassageError> {
         let until = &self.passage.until;
         let found = cells(self.system.as_ref(), self.space, until, factor)?;
         let enclosed = enclosed(self.system, &found);
         let space = found.space;
-        let assemble = |dissipation, closure| {
-            let scheme = (dissipation, closure);
-            assemble_absorbing(&enclosed, &space, until, self.options, scheme)
-        };
+        let (system, options) = (&enclosed, self.options);
         let (full, half) = rayon::join(
-            || assemble(Dissipation::Full, Closure::Fourth),
-            || assemble(Dissipation::Half, Closure::Fourth),
+            || assemble_with_border_change(system, &space, until, options, Dissipation::Full),
+            || {
+                let scheme = (Dissipation::Half, Closure::Fourth);
+                assemble_absorbing(system, &space, until, options, scheme)
+            },
         );
-        let (full, half) = (full?, half?);
-        let third = assemble(Dissipation::Full, Closure::Third)?;
+        let ((full, border), half) = (full?, half?);
         let spread = self.density.map(|density| density.unknowns);
         let weights =
             |nodes, spread: Option<&[f64]>| self.weights(&space, &full.kept, nodes, spread);
@@ -88,22 +90,27 @@ impl Question<'_> {
             true => weights(FEWER_NODES, spread)?,
             false => start.clone(),
         };
-        let mut solver = AbsorbingSolver::new(&space, *self.rates, self.cancellation).rough();
+        let mut solver = AbsorbingSolver::new(&space, *self.rates, self.cancellation)
+            .rough()
+            .free()
+            .with_memory(memory.take());
         let cells = (&space, full.kept.as_slice());
-        let of_density =
-            judged.and_then(|density| DensityStart::new(self.passage, density, self.space, cells));
+        let of_density = match judged {
+            Some(density) => DensityStart::new(self.passage, density, self.space, cells)?,
+            None => None,
+        };
         let starts = [start.as_slice(), &coarse];
         let begun = other.map(|other| other.on(&space, &full.kept));
         let exits = Exits::new(self.passage, &space);
         let (mut both, lasting) = moments(
             &mut solver,
-            ([&full, &half, &third], &exits),
+            ([&full, &half], &border, &exits),
             starts,
             of_density.as_ref(),
             begun.as_deref(),
         )?;
         let mut work = solver.work;
-        drop(solver);
+        memory.put(solver.into_memory());
         if let Some(times) = self.passage.times_asked(both[0].values[0]) {
             let settings = (self.rates, self.cancellation);
             let second = match judged.and_then(|density| density.second()) {
@@ -159,13 +166,13 @@ impl Question<'_> {
     }
 }
 
-/// Mean, standard deviation and rate by a generator, and by another one to first order of what they differ by; a third
-/// one, with a border of lower order, adds what it changes to the errors. The start is given by many nodes and by
+/// Mean, standard deviation and rate by a generator, and by another one to first order of what they differ by; what a
+/// border of lower order changes of the first adds what it does to the errors. The start is given by many nodes and by
 /// fewer, and may be spread as a density that has errors of its own. The density of the rate is given too; it is looked
 /// for from `begun` on.
 fn moments(
     solver: &mut AbsorbingSolver<'_>,
-    ([one, other, third], exits): ([&AbsorbingGenerator; 3], &Exits),
+    ([one, other], border, exits): ([&AbsorbingGenerator; 2], &RateChange, &Exits),
     [start, coarse]: [&[f64]; 2],
     spread_start: Option<&DensityStart<'_>>,
     begun: Option<&[f64]>,
@@ -196,9 +203,13 @@ fn moments(
         let of_vector = stage.of_balance(&stage.balance(vector), &left, vector);
         -of_vector / left.over(vector)
     };
+    let by_other = |pairs: [(&Expected, &[f64]); 1]| -> f64 {
+        let [through] = Expected::through(pairs, &other.rates, &other.ends);
+        through
+    };
     let rate_change = |vector: &[f64]| {
-        let change = left.through(&other.rates, &other.ends, vector)
-            - stage.of_balance(&stage.balance(vector), &left, vector);
+        let change =
+            by_other([(&left, vector)]) - stage.of_balance(&stage.balance(vector), &left, vector);
         -change / left.over(vector)
     };
     // A density from another grid is turned once toward this grid's, which does where that changes much less of the
@@ -224,39 +235,59 @@ fn moments(
         quotient if quotient > 0.0 && quotient.is_finite() => quotient,
         _ => found,
     };
-    let parts = exits.rates(one);
+    let parts = exits.rates(&one.endings);
     let entering = parts.iter().map(|rates| solver.expected(&stage, rates));
     let entering: Vec<Expected> = entering.collect::<Result<_, _>>()?;
     let into = parts.iter().zip(&entering);
     let shares: Vec<f64> = into
         .map(|(rates, share)| dot(rates, &first) + left_of(start, share, &first, &of_first))
         .collect();
-    let share_changes = |other: &AbsorbingGenerator| -> Vec<f64> {
-        let others = exits.rates(other);
-        let pairs = parts.iter().zip(&others).zip(&entering);
-        let one = |((own, others), share): ((&Vec<f64>, &Vec<f64>), &Expected)| {
-            entry_change(own, others, &first) + share.through(&other.rates, &other.ends, &first)
-                - stage.of_balance(&of_first, share, &first)
-        };
-        pairs.map(one).collect()
+    let others_parts = exits.rates(&other.endings);
+    let pairs = parts.iter().zip(&others_parts).zip(&entering);
+    let share_changes = pairs.map(|((own, others), share)| {
+        entry_change(own, others, &first) + by_other([(share, first.as_slice())])
+            - stage.of_balance(&of_first, share, &first)
+    });
+    let share_changes: Vec<f64> = share_changes.collect();
+    // Of mean, mean square and rate, from what is w·Q' z by another generator.
+    let pairs = [
+        (&expected, first.as_slice()),
+        (&expected, &second),
+        (&again, &first),
+    ];
+    let changes = |[of_mean, of_second, of_again]: [f64; 3], of_rate: f64| {
+        [of_mean, 2.0 * (of_second + of_again), -of_rate / overlap]
     };
-    // Of mean, mean square and rate, by another generator.
-    let changes = |other: &AbsorbingGenerator| -> [f64; 3] {
-        let change = |expected: &Expected, times: &[f64], balance: &[f64]| {
-            expected.through(&other.rates, &other.ends, times)
-                - stage.of_balance(balance, expected, times)
-        };
-        [
-            change(&expected, &first, &of_first),
-            2.0 * (change(&expected, &second, &of_second) + change(&again, &first, &of_first)),
-            -change(&left, &lasting, &of_lasting) / overlap,
-        ]
+    let by_half = {
+        let [mean, second_one, again_one] = Expected::through(pairs, &other.rates, &other.ends);
+        let moments = [
+            mean - stage.of_balance(&of_first, &expected, &first),
+            second_one - stage.of_balance(&of_second, &expected, &second),
+            again_one - stage.of_balance(&of_first, &again, &first),
+        ];
+        let of_rate = by_other([(&left, lasting.as_slice())]);
+        changes(
+            moments,
+            of_rate - stage.of_balance(&of_lasting, &left, &lasting),
+        )
     };
+    let of_border = {
+        let moments = Expected::through(pairs, &border.rates, &border.ends);
+        let lasting = [(&left, lasting.as_slice())];
+        let [of_rate] = Expected::through(lasting, &border.rates, &border.ends);
+        changes(moments, of_rate)
+    };
+    let border_parts = exits.rates(&border.endings);
+    let border_shares = border_parts.iter().zip(&entering).map(|(rates, share)| {
+        let pair = [(share, first.as_slice())];
+        let [through] = Expected::through(pair, &border.rates, &border.ends);
+        dot(rates, &first) + through
+    });
     let spread = (square - mean * mean).max(f64::MIN_POSITIVE).sqrt();
-    let [of_mean, of_square, of_rate] = changes(third);
+    let [of_mean, of_square, of_rate] = of_border;
     let of_deviation = (0.5 * of_square - mean * of_mean) / spread;
     let mut border = [of_mean, of_deviation, of_rate].map(f64::abs).to_vec();
-    border.extend(share_changes(third).into_iter().map(f64::abs));
+    border.extend(border_shares.map(f64::abs));
     // What fewer nodes change of the start, and another way to end sums at an oblique border.
     let of_start = expected.difference(start, coarse).abs();
     let of_sums = (dot(others, &first) - mean).abs();
@@ -287,12 +318,11 @@ fn moments(
             stretch: (of_density[0] + border[0]) / mean,
         })
     };
-    let [mean_change, square_change, rate_change] = changes(other);
+    let [mean_change, square_change, rate_change] = by_half;
     let full = numbers(mean, square, rate, &shares);
-    let changes = share_changes(other);
     let half_shares: Vec<f64> = shares
         .iter()
-        .zip(changes)
+        .zip(share_changes)
         .map(|(share, change)| share + change)
         .collect();
     let half = numbers(

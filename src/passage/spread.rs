@@ -175,7 +175,7 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
         let (mut sum, mut aside) = (0.0, Vec::new());
         for (number, mass) in masses.iter_mut().enumerate() {
             let (mut rest, mut cell, mut stride) = (number, 0, 1);
-            let mut places = vec![0.0; counts.len()];
+            let mut places = [0.0; MAX_DIMENSION];
             for axis in (0..counts.len()).rev() {
                 let at = rest % counts[axis];
                 rest /= counts[axis];
@@ -190,7 +190,7 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
             };
             sum += *mass;
             if is_whole[cell] && !reaches[number] {
-                aside.push((places, share));
+                aside.push((places[..counts.len()].to_vec(), share));
             }
         }
         let spread = scattered(&masses, &space.shape(), &to);

@@ -7,7 +7,6 @@ use super::nodes::{AxisWeights, NODES, about, along, each, place_of};
 use super::tensor::{gathered, whole};
 use crate::MAX_DIMENSION;
 use crate::space::{Axis, CellSpace};
-use crate::system::BoundQuantity;
 
 /// Shifts of the nodes that are tried, nearest first, where some of them are inside the target.
 const SHIFTS: [isize; 7] = [0, 1, -1, 2, -2, 3, -3];
@@ -75,11 +74,12 @@ pub(super) fn add_state(
     })
 }
 
-/// A field that is known at the kept nodes of one space, at the nodes of another; `None` inside the target.
+/// A field that is known at the kept nodes of one space, at the nodes of another; `None` inside the target, where
+/// `levels` of those nodes are negative.
 pub(super) fn at_nodes_of(
     other: &CellSpace,
     cells: (&CellSpace, &[bool]),
-    until: &BoundQuantity,
+    levels: &[f64],
     field: &[f64],
 ) -> Vec<Option<f64>> {
     let places: Vec<Vec<f64>> = other
@@ -88,7 +88,8 @@ pub(super) fn at_nodes_of(
         .map(|axis| axis.nodes().to_vec())
         .collect();
     let near = |state: &[f64]| at_state(cells, state, NODES, field);
-    at_states_of(&places, cells, until, field, near)
+    let is_inside = |node: usize, _: &[f64]| levels[node] < 0.0;
+    at_states_of(&places, cells, is_inside, field, near)
 }
 
 /// A field that is known at the kept nodes of a space, at a state, by polynomials through so many nodes an axis.
@@ -106,11 +107,12 @@ pub(super) fn at_state(
 }
 
 /// A field that is known at the kept nodes of a space, at all states with some coordinates along each axis, those of
-/// the last axis fastest; `None` inside the target. What it is at a state near the target, `near` says.
+/// the last axis fastest; `None` inside the target, as is told of a state with its number. What it is at a state near
+/// the target, `near` says.
 pub(super) fn at_states_of(
     places: &[Vec<f64>],
     (space, kept): (&CellSpace, &[bool]),
-    until: &BoundQuantity,
+    is_inside: impl Fn(usize, &[f64]) -> bool,
     field: &[f64],
     near: impl Fn(&[f64]) -> Option<f64>,
 ) -> Vec<Option<f64>> {
@@ -126,7 +128,7 @@ pub(super) fn at_states_of(
             rest /= places.len();
         }
         let state = &state[..places.len()];
-        if until.at(state) < 0.0 || space.find(state).is_none() {
+        if is_inside(number, state) || space.find(state).is_none() {
             return None;
         }
         if is_whole[number] {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::memory::PassageMemory;
 use super::solve::{Numbers, Question};
 use super::{KnownDensity, Passage, PassageError};
 use crate::cancellation::Cancellation;
@@ -57,6 +58,29 @@ pub fn timed(
     settings: (&GeneratorOptions, &RateOptions),
     cancellation: &Cancellation,
 ) -> Result<Timed, PassageError> {
+    let memory = PassageMemory::default();
+    timed_from(
+        (system, space),
+        passage,
+        density,
+        settings,
+        &memory,
+        cancellation,
+    )
+}
+
+/// The same numbers, with what the same passage has left at another value of a parameter, which makes them sooner.
+///
+/// # Errors
+/// [`PassageError`].
+pub fn timed_from(
+    (system, space): (&Arc<dyn System>, &CellSpace),
+    passage: &Passage,
+    density: Option<KnownDensity<'_>>,
+    settings: (&GeneratorOptions, &RateOptions),
+    memory: &PassageMemory,
+    cancellation: &Cancellation,
+) -> Result<Timed, PassageError> {
     let question = Question {
         system,
         space,
@@ -68,11 +92,12 @@ pub fn timed(
     };
     // The density of the rate on the fewest cells is where the others look for theirs.
     let [more, fewest] = FEWER;
-    let coarsest = question.solve(fewest.0, None)?;
+    let [of_finest, of_coarse, of_coarsest] = &memory.grids;
+    let coarsest = question.solve(fewest.0, None, of_coarsest)?;
     let begun = Some(&coarsest.lasting);
     let (finest, coarse) = rayon::join(
-        || question.solve(1.0, begun),
-        || question.solve(more.0, begun),
+        || question.solve(1.0, begun, of_finest),
+        || question.solve(more.0, begun, of_coarse),
     );
     let (finest, coarse) = (finest?, coarse?);
     let mut work = finest.work;

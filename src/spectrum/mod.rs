@@ -84,6 +84,7 @@
 
 mod errors;
 mod grid;
+mod kramers;
 mod model;
 mod modes;
 mod peak;
@@ -93,6 +94,7 @@ mod slow;
 mod switching;
 mod transfer;
 
+pub use kramers::{EscapeFormulas, escape_formulas};
 pub(crate) use power::rate_of_change;
 pub use power::{Features, Power, PowerQuestion, Spectrum, StateFunction, power_spectra};
 pub use slow::{SlowMode, SlowModes, slow_modes};

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::{
-    AtPhase, Enclosed, FieldQuestion, FixedPointFault, Linearised, Model, NoiseKind,
-    ParameterValues, Path, Quantity, Questions, System, SystemError, Tangent, TangentFault,
+    AtPhase, DampedParticle, Enclosed, FieldQuestion, FixedPointFault, Linearised, Model,
+    NoiseKind, ParameterValues, Path, Quantity, Questions, System, SystemError, Tangent,
+    TangentFault,
 };
 
 /// Systems along a path: one number in, a bound system out, with names and symbols for tables and figures.
@@ -114,6 +115,13 @@ impl Family {
         let values = values.map_err(|_| FixedPointFault::NotAllowed)?;
         let formulas = self.model.formulas().ok_or(FixedPointFault::NoFormulas)?;
         formulas.linearised(values.as_slice(), state)
+    }
+
+    /// The damped particle in a potential that the formulas are at a coordinate of the path; `None` where their form
+    /// shows none.
+    pub fn particle_at(&self, coordinate: f64) -> Option<DampedParticle> {
+        let values = self.values_at(coordinate).ok()?;
+        self.model.formulas()?.particle(values.as_slice())
     }
 
     /// Why there is no largest Lyapunov exponent along the density at a coordinate of the path; `None` where there is

@@ -75,8 +75,8 @@ pub use tangent::TangentFault;
 pub(crate) use tangent::{HALF_TURN, Tangent};
 pub(crate) use typed::FormulaHazard;
 pub use typed::{
-    CompiledDrift, FormulaPlace, Interpretation, PeriodFault, TypedEquations, TypedModel,
-    TypedModelError,
+    CompiledDrift, DampedParticle, FormulaPlace, Interpretation, PeriodFault, TypedEquations,
+    TypedModel, TypedModelError,
 };
 
 /// An Itô equation dX = a(X, t) dt + Σ_k b_k(X, t) e_{axis(k)} dW_k with bound parameters.

@@ -219,6 +219,12 @@ fn errors_hold_on_random_linear_systems() {
 
 /// The rates between two regions, there and back, of a system that asks for them in its file.
 fn between(text: &str) -> [(f64, f64); 2] {
+    measured(text, ["go_switching_rate", "go_return_rate"])
+        .map(|found| (found.value, found.error.unwrap()))
+}
+
+/// Measures at the first value of a sweep.
+fn measured<const N: usize>(text: &str, names: [&str; N]) -> [pbif::continuation::Measure; N] {
     use pbif::continuation::DensitySource;
     use pbif::method::{GeneratorMethodOptions, GeneratorSource};
     use pbif::sweep_file::SweepFile;
@@ -231,11 +237,55 @@ fn between(text: &str) -> [(f64, f64); 2] {
     let source = GeneratorSource::new(&sweep.problem, &options).unwrap();
     let from = sweep.problem.family().ends().0;
     let report = source.open(&never).solve(from).unwrap().report;
-    ["go_switching_rate", "go_return_rate"].map(|name| {
+    names.map(|name| {
         let found = report.measures.iter().find(|one| one.name == name);
-        let found = found.unwrap_or_else(|| panic!("{:?}", report.findings));
-        (found.value, found.error.unwrap())
+        found
+            .unwrap_or_else(|| panic!("{name}: {:?}", report.findings))
+            .clone()
     })
+}
+
+#[test]
+fn formulas_for_high_barriers_are_the_gap_but_for_what_they_leave_out() {
+    // Duffing's well, ΔV = 1/4. What Mel'nikov and Meshkov leave out is of the order of T/ΔV.
+    let off = |temperature: f64| {
+        let names = ["go_switching_rate", "go_kramers", "go_melnikov"];
+        let [rate, kramers, melnikov] = measured(
+            &format!(
+                r#"
+[system.equations]
+x = "y"
+y = "x - x^3 - g y"
+[system.noise]
+y = "sqrt(2 g T)"
+[system.parameters]
+T = {temperature}
+[sweep]
+parameter = "g"
+from = 0.5
+to = 0.6
+points = 2
+[cells]
+x = {{ from = -2.2, to = 2.2, count = 72 }}
+y = {{ from = -1.8, to = 1.8, count = 72 }}
+[passage]
+go = {{ from = "x < -0.5", to = "x > 0.5", switching = "on" }}
+"#
+            ),
+            names,
+        );
+        println!("T = {temperature}: {rate:?}, Kramers {kramers:?}, Mel'nikov {melnikov:?}");
+        assert_eq!((kramers.error, melnikov.error), (None, None));
+        assert!(kramers.value > melnikov.value);
+        (
+            melnikov.value / rate.value - 1.0,
+            rate.error.unwrap() / rate.value,
+        )
+    };
+    let temperature = 0.06;
+    let (change, error) = off(temperature);
+    let left_out = temperature / 0.25;
+    assert!(change.abs() < left_out + error, "{change} {error}");
 }
 
 /// ∫ f over a range, by the midpoint rule.

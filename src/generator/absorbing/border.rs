@@ -52,8 +52,8 @@ pub(super) struct Border<'a> {
     pub(super) level: &'a BoundQuantity,
     pub(super) axes: &'a [AxisGeometry],
     pub(super) strides: &'a [usize],
-    /// Cells of the polynomial that goes on past the border.
-    pub(super) cells: usize,
+    /// Cells of the polynomial that goes on past the border, in one way or more.
+    pub(super) cells: &'a [usize],
     /// The level at the nodes.
     pub(super) levels: Vec<f64>,
 }
@@ -64,13 +64,13 @@ impl Border<'_> {
         self.levels[cell] >= 0.0
     }
 
-    /// What stencils read beyond an end of a stretch.
+    /// What stencils read beyond an end of a stretch, in each way.
     pub(super) fn beyond(
         &self,
         line: &GridLine,
         (from, to): (usize, usize),
         is_upper: bool,
-    ) -> Beyond {
+    ) -> Vec<Beyond> {
         let (inner, outer) = if is_upper {
             (to - 1, to)
         } else {
@@ -79,33 +79,13 @@ impl Border<'_> {
         let crossing = self.crossing(line, inner, outer);
         let gradient = self.gradient(line, crossing);
         let Some(is_zero) = self.is_zero(line, &gradient, inner, is_upper) else {
-            return Beyond::default();
+            return self.cells.iter().map(|_| Beyond::default()).collect();
         };
         let cells = self.share_of_a_cell(line.axis, inner, outer, crossing);
-        let skip = usize::from(is_zero && cells < TOO_NEAR && to - from > 1);
-        let most = self.cells - skip;
-        let used = most.min(to - from - skip);
-        // Places of the nodes, and of the zero, with the end's last node at 0 and inward negative.
-        let mut places: Vec<f64> = (skip..skip + used).map(|back| -(back as f64)).collect();
-        if is_zero {
-            places.push(cells);
-        }
-        let place = |back: usize| if is_upper { to - 1 - back } else { from + back };
-        let at_nodes = |weights: Vec<f64>, share: f64| -> Vec<(usize, f64)> {
-            let nodes = weights.into_iter().take(used).enumerate();
-            nodes
-                .map(|(back, weight)| (place(back + skip), share * weight))
-                .collect()
-        };
-        let changes = at_nodes(beyond_the_sum(&places, cells), -1.0);
         let shares = shares_of_normal(&gradient, line.axis);
-        Beyond {
-            read: std::array::from_fn(|far| at_nodes(lagrange(&places, 1.0 + far as f64), 1.0)),
-            weights: changes
-                .into_iter()
-                .map(|(position, change)| (position, shares.map(|share| share * change)))
-                .collect(),
-        }
+        let through =
+            |&most: &usize| through_cells((from, to), is_upper, (is_zero, cells), (most, shares));
+        self.cells.iter().map(through).collect()
     }
 
     /// Where the line crosses the border between two neighbouring nodes, by bracketed secants.
@@ -206,6 +186,39 @@ impl Border<'_> {
         let drift = self.system.drift_at(0.0, &state[..self.axes.len()])[axis];
         let outward = if is_upper { drift } else { -drift };
         (outward > 0.0).then_some(false)
+    }
+}
+
+/// What stencils read beyond an end of a stretch by the polynomial through so many of its last cells, and through zero
+/// where it is; the zero is so many cells beyond the last one. The shares are those of [`shares_of_normal`].
+fn through_cells(
+    (from, to): (usize, usize),
+    is_upper: bool,
+    (is_zero, cells): (bool, f64),
+    (most, shares): (usize, [f64; 2]),
+) -> Beyond {
+    let skip = usize::from(is_zero && cells < TOO_NEAR && to - from > 1);
+    let most = most - skip;
+    let used = most.min(to - from - skip);
+    // Places of the nodes, and of the zero, with the end's last node at 0 and inward negative.
+    let mut places: Vec<f64> = (skip..skip + used).map(|back| -(back as f64)).collect();
+    if is_zero {
+        places.push(cells);
+    }
+    let place = |back: usize| if is_upper { to - 1 - back } else { from + back };
+    let at_nodes = |weights: Vec<f64>, share: f64| -> Vec<(usize, f64)> {
+        let nodes = weights.into_iter().take(used).enumerate();
+        nodes
+            .map(|(back, weight)| (place(back + skip), share * weight))
+            .collect()
+    };
+    let changes = at_nodes(beyond_the_sum(&places, cells), -1.0);
+    Beyond {
+        read: std::array::from_fn(|far| at_nodes(lagrange(&places, 1.0 + far as f64), 1.0)),
+        weights: changes
+            .into_iter()
+            .map(|(position, change)| (position, shares.map(|share| share * change)))
+            .collect(),
     }
 }
 

@@ -9,7 +9,9 @@ use crate::density::EstimatedDensity;
 use crate::generator::GeneratorOptions;
 use crate::method::measures::measures_of_passage;
 use crate::method::{GeneratorMethodOptions, MethodError, Problem};
-use crate::passage::{FieldTarget, KnownDensity, Passage, PassageError, Timed, field, timed};
+use crate::passage::{
+    FieldTarget, KnownDensity, Passage, PassageError, PassageMemory, Timed, field, timed_from,
+};
 use crate::space::CellSpace;
 use crate::stationary::generator::{RateError, RateOptions};
 use crate::system::{FieldQuestion, Model, ParameterValues, PassageQuestion, Region, System};
@@ -19,7 +21,8 @@ use crate::system::{FieldQuestion, Model, ParameterValues, PassageQuestion, Regi
 const TOLERANCE: f64 = 1e-4;
 
 /// Adds the numbers of all passages at a value to a report, with findings where there are none. `density` is
-/// the steady state, with what is watched of it, in which regions may be found.
+/// the steady state, with what is watched of it, in which regions may be found. `memory` is what the passages of
+/// another value have left, one a question.
 ///
 /// # Errors
 /// [`MethodError::Cancelled`], and errors of values that the family does not have.
@@ -28,7 +31,7 @@ pub(super) fn add_passages(
     (problem, value): (&Problem, f64),
     system: &Arc<dyn System>,
     (density, watched): (Option<KnownDensity<'_>>, &[EstimatedDensity]),
-    options: &GeneratorMethodOptions,
+    (options, memory): (&GeneratorMethodOptions, &[PassageMemory]),
     cancellation: &Cancellation,
 ) -> Result<(), MethodError> {
     let family = problem.family();
@@ -50,12 +53,13 @@ pub(super) fn add_passages(
         },
         cancellation,
     };
-    for (passage, question) in family.questions.passages.iter().enumerate() {
+    let questions = family.questions.passages.iter().zip(memory);
+    for (passage, (question, memory)) in questions.enumerate() {
         let mut faults = Vec::new();
         let numbers = if question.has_basins() {
-            asked.numbers_of_basins(question, family.model(), watched)?
+            asked.numbers_of_basins(question, memory, family.model(), watched)?
         } else {
-            asked.numbers(question)?
+            asked.numbers(question, memory)?
         };
         match numbers {
             Ok(measures) => report.measures.extend(measures),
@@ -91,16 +95,16 @@ struct Asked<'a> {
 type Answer<T> = Result<Result<T, PassageFault>, MethodError>;
 
 impl Asked<'_> {
-    fn numbers(&self, question: &PassageQuestion) -> Answer<Vec<Measure>> {
+    fn numbers(&self, question: &PassageQuestion, memory: &PassageMemory) -> Answer<Vec<Measure>> {
         let passage = Passage::bind(question, &self.values)?;
         let settings = (&self.generator, &self.rates);
-        let (space, density) = (self.space, self.density);
-        let found = timed(
-            self.system,
-            space,
+        let cells = (self.system, self.space);
+        let found = timed_from(
+            cells,
             &passage,
-            density,
+            self.density,
             settings,
+            memory,
             self.cancellation,
         );
         or_fault(found.map(|timed| measures(question, &timed)))
@@ -110,6 +114,7 @@ impl Asked<'_> {
     fn numbers_of_basins(
         &self,
         question: &PassageQuestion,
+        memory: &PassageMemory,
         model: &Model,
         watched: &[EstimatedDensity],
     ) -> Answer<Vec<Measure>> {
@@ -118,7 +123,7 @@ impl Asked<'_> {
             let Some(typed) = with_intervals(question, model, watched, moved) else {
                 return Ok(Err(PassageFault::NoPeak));
             };
-            match self.numbers(&typed)? {
+            match self.numbers(&typed, memory)? {
                 Ok(numbers) => all.push(numbers),
                 Err(fault) => return Ok(Err(fault)),
             }

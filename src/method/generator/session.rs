@@ -26,7 +26,7 @@ use crate::generator::Generator;
 use crate::method::MethodError;
 use crate::method::neighbours::Neighbours;
 use crate::method::watched::planes;
-use crate::passage::KnownDensity;
+use crate::passage::{KnownDensity, PassageMemory};
 use crate::stationary::generator::{Along, RateSolver, RateSteadyState};
 use crate::system::System;
 
@@ -50,6 +50,8 @@ pub(super) struct GeneratorSession {
     pub(super) stand: Stand,
     /// Whether the last solve has left a trail.
     pub(super) has_left: bool,
+    /// What the passages of the last value have left, one a question.
+    passages: Vec<PassageMemory>,
     pub(super) cancellation: Cancellation,
 }
 
@@ -75,6 +77,9 @@ impl GeneratorSession {
             trails: Neighbours::default(),
             stand: Stand::default(),
             has_left: false,
+            passages: (source.problem.family().questions.passages.iter())
+                .map(|_| PassageMemory::default())
+                .collect(),
             cancellation: cancellation.clone(),
         }
     }
@@ -154,7 +159,7 @@ impl GeneratorSession {
             asked,
             system,
             (density, watched),
-            options,
+            (options, &self.passages),
             cancellation,
         )?;
         let at = (system, value);

@@ -7,11 +7,15 @@ use crate::cancellation::Cancellation;
 use crate::continuation::{Finding, PassageFault, SolveReport};
 use crate::generator::{GeneratorOptions, levels};
 use crate::method::MethodError;
-use crate::method::measures::{measures_of_slow_modes, switching_measures};
+use crate::method::measures::{formula_measures, measures_of_slow_modes, switching_measures};
 use crate::passage::KnownDensity;
-use crate::spectrum::{SlowMode, SlowModes, SpectrumError, Steady, slow_modes, switching};
+use crate::space::Axis;
+use crate::spectrum::{
+    EscapeFormulas, SlowMode, SlowModes, SpectrumError, Steady, escape_formulas, slow_modes,
+    switching,
+};
 use crate::stationary::generator::{RateError, RateOptions};
-use crate::system::{PassageStart, Region, System};
+use crate::system::{BoundQuantity, DampedParticle, PassageStart, Region, System};
 
 /// Error at which solves stop to be iterated, relative to their right side: well below what an eigenvalue may change
 /// by more vectors.
@@ -112,6 +116,31 @@ fn add_switching(
                 fault: PassageFault::NoSwitching,
             }),
         }
+        if let Some(particle) = family.particle_at(value) {
+            let bind = |region: &Region| region.level().bind(&values);
+            let regions = [bind(from)?, bind(&question.until)?];
+            let range = &space.axes()[particle.position];
+            let rates = over_a_barrier(&particle, range, &regions);
+            let rates = rates
+                .iter()
+                .flat_map(|rates| formula_measures(question, rates));
+            report.measures.extend(rates);
+        }
     }
     Ok(())
+}
+
+/// The rates by formulas at which a particle goes over the barrier between two regions.
+fn over_a_barrier(
+    particle: &DampedParticle,
+    range: &Axis,
+    [from, until]: &[BoundQuantity; 2],
+) -> Option<EscapeFormulas> {
+    let at_rest = |region: &BoundQuantity, position: f64| {
+        let mut state = [0.0; 2];
+        state[particle.position] = position;
+        region.at(&state) < 0.0
+    };
+    let (first, second) = (|x| at_rest(from, x), |x| at_rest(until, x));
+    escape_formulas(particle, (range.from(), range.to()), [&first, &second])
 }

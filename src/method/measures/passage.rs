@@ -1,16 +1,21 @@
 //! Times of first passage that a family asks for, as columns.
 
 use crate::continuation::measure::{
-    PASSAGE_BACK, PASSAGE_DEVIATION, PASSAGE_MEAN, PASSAGE_QUANTILE, PASSAGE_RATE, PASSAGE_SHARE,
-    PASSAGE_SURVIVAL, PASSAGE_THERE,
+    PASSAGE_BACK, PASSAGE_DEVIATION, PASSAGE_KRAMERS, PASSAGE_MEAN, PASSAGE_MELNIKOV,
+    PASSAGE_QUANTILE, PASSAGE_RATE, PASSAGE_SHARE, PASSAGE_SURVIVAL, PASSAGE_THERE,
 };
 use crate::continuation::{Measure, MeasureColumn, MeasureKind};
 use crate::passage::WithError;
+use crate::spectrum::EscapeFormulas;
 use crate::system::{Family, PassageQuestion};
 
 /// The columns of all passages.
 pub(crate) fn passage_columns(family: &Family) -> Vec<MeasureColumn> {
-    family.questions.passages.iter().flat_map(columns).collect()
+    let of_one = |question| {
+        let rates = formula_columns(question).filter(|_| is_particle(family));
+        columns(question).into_iter().chain(rates)
+    };
+    family.questions.passages.iter().flat_map(of_one).collect()
 }
 
 /// The columns of a passage: mean, standard deviation, rate, shares of exits, probabilities and quantiles.
@@ -32,6 +37,35 @@ pub(in crate::method) fn columns(question: &PassageQuestion) -> Vec<MeasureColum
     let moments = moments.into_iter().chain(exits);
     let numbers = moments.chain(times).chain(shares);
     numbers.chain(rates_between(question)).collect()
+}
+
+/// Whether the equations are those of a damped particle in a potential at an end of the path.
+fn is_particle(family: &Family) -> bool {
+    let (from, to) = family.ends();
+    [from, to]
+        .into_iter()
+        .any(|end| family.particle_at(end).is_some())
+}
+
+/// The columns of the rates over a barrier by formulas, beside those between two states.
+fn formula_columns(question: &PassageQuestion) -> impl Iterator<Item = MeasureColumn> {
+    let both = [PASSAGE_KRAMERS, PASSAGE_MELNIKOV].into_iter();
+    both.filter(|_| question.switching)
+        .map(|kind| MeasureColumn {
+            kind,
+            of: question.name.clone(),
+        })
+}
+
+/// The rates over a barrier by formulas as measures.
+pub(in crate::method) fn formula_measures(
+    question: &PassageQuestion,
+    rates: &EscapeFormulas,
+) -> Vec<Measure> {
+    let pairs = formula_columns(question).zip([rates.kramers, rates.melnikov]);
+    pairs
+        .map(|(column, rate)| column.kind.measure(&column.of, rate))
+        .collect()
 }
 
 /// The columns of the rates between two states.

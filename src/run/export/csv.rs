@@ -1,4 +1,5 @@
-//! Tables of text: of every density one row a cell and value of the parameter, for programs that read columns.
+//! Tables of text: of every density, and of every field of a passage, one row a cell and value of the parameter, for
+//! programs that read columns.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -6,8 +7,10 @@ use std::path::Path;
 use super::super::number::format_number;
 use super::super::{RunError, write_anywhere};
 use crate::continuation::{Point, Subject};
+use crate::space::Axis;
 
-/// Writes `p_x.csv`, `p_xy.csv`, … into a folder: parameter, coordinates of the cell's centre, density, standard error.
+/// Writes `p_x.csv`, `p_xy.csv`, … into a folder: parameter, coordinates of the cell's centre, density, standard error;
+/// and the same of fields of passages, `exit_mean_time.csv`, ….
 pub(super) fn write(subject: &Subject, points: &[&Point], folder: &Path) -> Result<(), RunError> {
     let family = &subject.family;
     for (index, observable) in subject.observables.iter().enumerate() {
@@ -18,26 +21,44 @@ pub(super) fn write(subject: &Subject, points: &[&Point], folder: &Path) -> Resu
         }
         text += &format!(",{name},{name}_error\n");
         for point in points {
-            add(&mut text, point, index);
+            if let Some(one) = point.densities.get(index) {
+                let numbers = (one.density.values.as_slice(), one.stated_errors());
+                add(&mut text, point.value, &one.density.axes, numbers);
+            }
+        }
+        write_anywhere(&folder.join(format!("{name}.csv")), text.as_bytes())?;
+    }
+    let fields = || points.iter().flat_map(|point| &point.report.fields);
+    let mut names: Vec<&str> = fields().map(|field| field.name.as_str()).collect();
+    let mut known = std::collections::BTreeSet::new();
+    names.retain(|name| known.insert(*name));
+    for name in names {
+        let mut text = family.parameter().to_owned();
+        let like = fields().find(|field| field.name == name);
+        for axis in 0..like.map_or(0, |field| field.axes.len()) {
+            text += &format!(",{}", family.axis(axis));
+        }
+        text += &format!(",{name},{name}_error\n");
+        for point in points {
+            let own = point.report.fields.iter().filter(|one| one.name == name);
+            for field in own {
+                let numbers = (field.values.as_slice(), field.errors.clone());
+                add(&mut text, point.value, &field.axes, numbers);
+            }
         }
         write_anywhere(&folder.join(format!("{name}.csv")), text.as_bytes())?;
     }
     Ok(())
 }
 
-/// The rows of a point.
-fn add(text: &mut String, point: &Point, index: usize) {
-    let Some(estimate) = point.densities.get(index) else {
-        return;
-    };
-    let value = format_number(point.value);
-    let axes = &estimate.density.axes;
+/// The rows of a point: numbers with their errors at the cells of one axis or two, but where there are none.
+fn add(text: &mut String, value: f64, axes: &[Axis], (values, errors): (&[f64], Vec<f64>)) {
+    let value = format_number(value);
     let centres: Vec<Vec<String>> = (axes.iter())
         .map(|axis| axis.centres().into_iter().map(format_number).collect())
         .collect();
-    let errors = estimate.stated_errors();
-    let numbers = estimate.density.values.iter().zip(&errors);
-    for (cell, (density, error)) in numbers.enumerate() {
+    let numbers = values.iter().zip(&errors).enumerate();
+    for (cell, (density, error)) in numbers.filter(|(_, (value, _))| !value.is_nan()) {
         let place = match &centres[..] {
             [x, y] => format!("{},{}", x[cell / y.len()], y[cell % y.len()]),
             [x] => x[cell].clone(),

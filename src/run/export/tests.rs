@@ -144,6 +144,34 @@ fn tables_have_a_row_a_cell() {
 }
 
 #[test]
+fn tables_of_fields_have_a_row_a_cell_where_the_field_is_known() {
+    let folder = tempfile::tempdir().unwrap();
+    let axes = point(0.0, true).densities[1].density.axes.clone();
+    let mut points = [point(0.125, true), point(0.5, true)];
+    points[1]
+        .report
+        .fields
+        .push(crate::continuation::StateField {
+            name: "exit_committor".to_owned(),
+            axes,
+            values: vec![0.0, 0.25, 0.5, f64::NAN, 0.75, 1.0],
+            errors: vec![0.125; 6],
+        });
+    export(
+        &result(points.to_vec()),
+        "",
+        ExportFormat::Csv,
+        folder.path(),
+    )
+    .unwrap();
+    let table = std::fs::read_to_string(folder.path().join("exit_committor.csv")).unwrap();
+    assert!(table.starts_with(
+        "f_c,x,y,exit_committor,exit_committor_error\n0.5,-0.5,0.5,0,0.125\n0.5,-0.5,1.5,0.25,0.125\n"
+    ));
+    assert_eq!(table.lines().count(), 1 + 5);
+}
+
+#[test]
 fn a_run_without_densities_has_nothing_to_export() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("export");

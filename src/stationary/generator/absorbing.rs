@@ -17,7 +17,7 @@ use super::balance::{add_product, dot, transposed_product};
 use super::narrowing;
 use super::newton::{FirstPass, norm, refined};
 use super::passes::{Seat, run_alone};
-use super::preconditioner::{LARGE, Preconditioner, Structure, estimate_of};
+use super::preconditioner::{LARGE, NO_CELL, Preconditioner, Structure, estimate_of};
 use super::solver::{largest, shape};
 use super::{RateError, RateMethod, RateOptions};
 use crate::cancellation::Cancellation;
@@ -38,14 +38,22 @@ pub(crate) struct AbsorbingSolver<'s> {
     space: &'s CellSpace,
     options: RateOptions,
     preconditioner: Option<Preconditioner>,
+    /// Factors of another matrix, whose structure and memory serve again where the pattern is the same.
+    memory: Option<Preconditioner>,
     /// Whether a solve may be left after one pass.
     is_rough: bool,
+    /// Whether no cell need be held where solves are left after one pass.
+    is_free: bool,
     /// What the first pass through the factors did, where solves may be left after one.
     first: Option<FirstPass>,
     /// Factorisations that were made, and passes through them.
     pub(crate) work: AbsorbingWork,
     cancellation: Cancellation,
 }
+
+/// Structure and memory of factors, kept from one matrix to the next.
+#[derive(Default)]
+pub(crate) struct FactorMemory(Option<Preconditioner>);
 
 /// What was done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -94,18 +102,24 @@ impl Expected {
         &self.beside
     }
 
-    /// w·Q z for a generator that is given by its rates (row, column, rate), any number of them for a place, and the
-    /// rates of its ends.
-    pub(crate) fn through(
-        &self,
+    /// w·Q z of pairs w and z, for a generator that is given by its rates (row, column, rate), any number of them for a
+    /// place, and the rates of its ends.
+    pub(crate) fn through<const N: usize>(
+        pairs: [(&Self, &[f64]); N],
         rates: &[(usize, usize, f64)],
         ends: &[f64],
-        times: &[f64],
-    ) -> f64 {
+    ) -> [f64; N] {
         // Columns sum to minus the ends, so that the held cell's value meets what ends alone.
-        let within = rates.iter();
-        let within = within.map(|&(row, column, rate)| self.beside[row] * rate * times[column]);
-        within.sum::<f64>() - self.at_held * dot(ends, times)
+        let mut within = [0.0; N];
+        for &(row, column, rate) in rates {
+            for (sum, (expected, times)) in within.iter_mut().zip(&pairs) {
+                *sum += expected.beside[row] * rate * times[column];
+            }
+        }
+        for (sum, (expected, times)) in within.iter_mut().zip(&pairs) {
+            *sum -= expected.at_held * dot(ends, times);
+        }
+        within
     }
 
     /// g + Qᵀ f for another generator and its gain: what its own equation for what is expected is short of.
@@ -159,7 +173,9 @@ impl<'s> AbsorbingSolver<'s> {
             space,
             options,
             preconditioner: None,
+            memory: None,
             is_rough: false,
+            is_free: false,
             first: None,
             work: AbsorbingWork::default(),
             cancellation: cancellation.clone(),
@@ -170,6 +186,24 @@ impl<'s> AbsorbingSolver<'s> {
     pub(crate) fn rough(mut self) -> Self {
         self.is_rough = true;
         self
+    }
+
+    /// The same, and no cell is held where one pass a solve is good enough without.
+    pub(crate) fn free(mut self) -> Self {
+        self.is_free = true;
+        self
+    }
+
+    /// The same, with the structure and the memory of factors that another solver has left.
+    pub(crate) fn with_memory(mut self, memory: FactorMemory) -> Self {
+        self.memory = memory.0;
+        self
+    }
+
+    /// Structure and memory of the factors, for another solver; nothing where they are large.
+    pub(crate) fn into_memory(self) -> FactorMemory {
+        let kept = self.preconditioner.or(self.memory);
+        FactorMemory(kept.filter(|kept| kept.factor_bytes() <= ROOM * LARGE))
     }
 
     /// Makes ready to solve a matrix, `n × n` by columns, column j the rates out of cell j, summing to -`ends[j]`, and
@@ -188,7 +222,7 @@ impl<'s> AbsorbingSolver<'s> {
         shape(cells, "ends", ends.len())?;
         shape(cells, "start", start.len())?;
         let mut held = match &self.preconditioner {
-            Some(kept) if is_alone(matrix, ends, kept.held) => {
+            Some(kept) if kept.held == NO_CELL || is_alone(matrix, ends, kept.held) => {
                 let stage = Absorbing {
                     matrix,
                     ends,
@@ -200,10 +234,11 @@ impl<'s> AbsorbingSolver<'s> {
             }
             Some(kept) => kept.held,
             None => {
-                if let Some(found) = self.free(matrix, ends, start)? {
+                if let Some(found) = self.without_held(matrix, ends, start)? {
                     return Ok(found);
                 }
-                self.factorise(matrix, largest(start).0)?
+                let structure = self.structure(matrix);
+                self.factorise(matrix, &structure, largest(start).0)?
             }
         };
         let mut tried = 1;
@@ -228,27 +263,29 @@ impl<'s> AbsorbingSolver<'s> {
                 }
                 return Ok((stage, times));
             }
-            held = self.factorise(matrix, longest)?;
+            held = self.factorise(matrix, &self.structure(matrix), longest)?;
             tried += 1;
         }
     }
 
-    /// A stage at which no cell is held but one that is coupled to none, with the times for a start; `None` where there
-    /// is no such cell, factors are in single precision, or Q is too near to a singular matrix for one pass a solve.
-    fn free<'a>(
+    /// A stage at which no cell is held, or one that is coupled to none, with the times for a start; `None` where
+    /// that may not be, factors are in single precision, or Q is too near to a singular matrix for one pass a solve.
+    fn without_held<'a>(
         &mut self,
         matrix: &'a CsMat<f64>,
         ends: &'a [f64],
         start: &[f64],
     ) -> Result<Option<(Absorbing<'a>, Vec<f64>)>, RateError> {
         let alone = (0..ends.len()).find(|&cell| is_alone(matrix, ends, cell));
-        let Some(held) = alone.filter(|_| self.is_rough) else {
+        let none = self.is_free.then_some(NO_CELL);
+        let Some(held) = alone.or(none).filter(|_| self.is_rough) else {
             return Ok(None);
         };
-        if self.method(&self.structure(matrix))? != RateMethod::Lu {
+        let structure = self.structure(matrix);
+        if self.method(&structure)? != RateMethod::Lu {
             return Ok(None);
         }
-        self.factorise(matrix, held)?;
+        self.factorise(matrix, &structure, held)?;
         let Some(kept) = &self.preconditioner else {
             return Ok(None);
         };
@@ -311,12 +348,16 @@ impl<'s> AbsorbingSolver<'s> {
     }
 
     /// Factorises; gives the cell that is held.
-    fn factorise(&mut self, matrix: &CsMat<f64>, held: usize) -> Result<usize, RateError> {
-        let structure = self.structure(matrix);
-        let method = self.method(&structure)?;
-        let old = self.preconditioner.take();
+    fn factorise(
+        &mut self,
+        matrix: &CsMat<f64>,
+        structure: &Structure,
+        held: usize,
+    ) -> Result<usize, RateError> {
+        let method = self.method(structure)?;
+        let old = self.preconditioner.take().or_else(|| self.memory.take());
         let (space, cancellation) = (self.space, &self.cancellation);
-        let new = Preconditioner::new(space, &structure, method, matrix, held, old, cancellation)?;
+        let new = Preconditioner::new(space, structure, method, matrix, held, old, cancellation)?;
         self.work.factorisations += 1;
         let held = new.held;
         self.preconditioner = Some(new);
@@ -335,7 +376,7 @@ impl<'s> AbsorbingSolver<'s> {
     ) -> Result<Vec<f64>, RateError> {
         let held = stage.held;
         let mut source: Vec<f64> = start.iter().map(|value| -value).collect();
-        source[held] = 0.0;
+        clear(&mut source, held);
         // What is beside the visits of the held cell.
         let mut times = self.reduced(stage.matrix, held, &source, false)?;
         let Some(Visits { unit, .. }) = &stage.visits else {
@@ -405,7 +446,7 @@ impl<'s> AbsorbingSolver<'s> {
                 add_product(matrix, x, &mut out);
                 out
             };
-            out[held] = 0.0;
+            clear(&mut out, held);
             out
         };
         let seat = Seat::default();
@@ -435,9 +476,16 @@ fn is_alone(matrix: &CsMat<f64>, ends: &[f64], cell: usize) -> bool {
     ends[cell] == 0.0 && column.is_some_and(|column| column.nnz() == 1)
 }
 
+/// Zero at the cell that is held, if one is.
+fn clear(values: &mut [f64], held: usize) {
+    if let Some(value) = values.get_mut(held) {
+        *value = 0.0;
+    }
+}
+
 /// The right side of what is gathered before a cell is reached.
 fn without(gain: &[f64], held: usize) -> Vec<f64> {
     let mut negative: Vec<f64> = gain.iter().map(|value| -value).collect();
-    negative[held] = 0.0;
+    clear(&mut negative, held);
     negative
 }

@@ -51,7 +51,7 @@ mod triangular;
 mod updates;
 
 pub use absorbing::AbsorbingWork;
-pub(crate) use absorbing::{AbsorbingSolver, Expected};
+pub(crate) use absorbing::{AbsorbingSolver, Expected, FactorMemory};
 pub(crate) use balance::dot;
 pub(crate) use memory::SolverMemory;
 pub use preconditioner::{Estimate, RateMethod, estimate};

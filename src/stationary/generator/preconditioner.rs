@@ -258,10 +258,13 @@ pub(super) fn estimate_of(
     })
 }
 
+/// In place of the number of the cell that is held: none is, which factors of all cells together can have.
+pub(super) const NO_CELL: usize = usize::MAX;
+
 /// M⁻¹ for M = Q (or its stand-in) with the row and column of one cell replaced by the identity's.
 pub(super) struct Preconditioner {
     factors: AnyFactors,
-    /// The cell held in the current factors.
+    /// The cell held in the current factors, or [`NO_CELL`].
     pub(super) held: usize,
 }
 

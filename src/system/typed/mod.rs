@@ -12,6 +12,7 @@ mod compiled;
 mod equations;
 mod error;
 mod linear;
+mod particle;
 mod read;
 mod relaxation;
 pub(super) mod statement;
@@ -28,6 +29,7 @@ pub use compiled::CompiledDrift;
 pub(crate) use equations::FormulaHazard;
 pub use equations::TypedEquations;
 pub use error::{FormulaPlace, PeriodFault, TypedModelError};
+pub use particle::DampedParticle;
 
 /// How a stochastic integral is read where the amplitude of a noise depends on the state that it drives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

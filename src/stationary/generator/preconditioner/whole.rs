@@ -2,7 +2,7 @@
 
 use sprs::CsMat;
 
-use super::RateMethod;
+use super::{NO_CELL, RateMethod};
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::stationary::generator::dissection::{Dissection, Grid};
 use crate::stationary::generator::fronts::{Factors, allocate, factorise};
@@ -79,15 +79,18 @@ impl WholeFactors {
             1.0
         };
         let mut values: Vec<f64> = matrix.data().iter().map(|rate| rate / self.scale).collect();
-        values[starts[held]..starts[held + 1]].fill(0.0);
-        for (value, &row) in values.iter_mut().zip(matrix.indices()) {
-            if row == held {
-                *value = 0.0;
+        let mut place = NO_CELL;
+        if held != NO_CELL {
+            values[starts[held]..starts[held + 1]].fill(0.0);
+            for (value, &row) in values.iter_mut().zip(matrix.indices()) {
+                if row == held {
+                    *value = 0.0;
+                }
             }
+            let held = held as u32;
+            let found = self.symbolic.order.iter().position(|&cell| cell == held);
+            place = found.unwrap_or(0);
         }
-        let held = held as u32;
-        let place = self.symbolic.order.iter().position(|&cell| cell == held);
-        let place = place.unwrap_or(0);
         let symbolic = &self.symbolic;
         match &mut self.numbers {
             Numbers::Double(factors) => factorise(symbolic, &values, place, factors, cancellation),
@@ -132,7 +135,9 @@ impl WholeFactors {
         for (&cell, value) in self.symbolic.order.iter().zip(x) {
             out[cell as usize] = value / self.scale;
         }
-        out[held] = 0.0;
+        if let Some(value) = out.get_mut(held) {
+            *value = 0.0;
+        }
         out
     }
 }
