@@ -11,7 +11,7 @@ use crate::continuation::{
     Finding, Measure, MeasureColumn, MeasureKind, PointStatus, Session, Solution, SolveReport,
     SourceError,
 };
-use crate::exponent::{Exponent, ExponentError, of_family};
+use crate::exponent::{Exponent, ExponentError, largest, of_family};
 use crate::monte_carlo::{TangentRun, exponent_along_trajectories, relaxation};
 use crate::system::{ExponentMethod, Family, FixedPointFault};
 
@@ -130,11 +130,13 @@ fn by_trajectories(
     let both = (system.as_ref(), &tangent);
     let starts = relaxed.settled_states();
     let found = exponent_along_trajectories(both, space, starts, &run, cancellation)?;
+    let exact = tangent.linear().and_then(|linear| largest(&linear).ok());
     Ok(found.map(|rates| {
-        rates.map(|rate| Exponent {
+        let [exponent, divergence] = rates.map(|rate| Exponent {
             value: rate.value,
             error: rate.error(),
-        })
+        });
+        [exact.unwrap_or(exponent), divergence]
     }))
 }
 

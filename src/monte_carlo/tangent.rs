@@ -3,7 +3,9 @@
 //! its logarithm grows is the exponent (G. Benettin, L. Galgani, A. Giorgilli and J.-M. Strelcyn, Meccanica 15, 1980).
 //!
 //! Every trajectory is followed twice under the same noise, with a step and with half of it: what that changes is the
-//! error of the step. The means of the trajectories, which know nothing of each other, tell the standard error.
+//! error of the step. The means of the trajectories, which know nothing of each other, tell the standard error. A mean over
+//! time has weights that are small at both ends, 1 - cos 2πt/T, so that what turns evenly averages out; and if its halves
+//! differ by more than by chance, deviations had not settled, which is an error too.
 
 use rayon::prelude::*;
 
@@ -30,6 +32,9 @@ const STEP_SHARE: f64 = 2e-3;
 
 /// Standard errors that a stated error has.
 const STANDARD_ERRORS: f64 = 3.0;
+
+/// How often a difference of halves is taken: what settles like 1/t is off by 1.3 times as much.
+const SLOW: f64 = 2.0;
 
 /// How trajectories are followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,33 +68,40 @@ pub(crate) struct MeanRate {
     pub standard_error: f64,
     /// What the half step changes, and the standard error of that.
     pub by_step: [f64; 2],
+    /// By how much the second half of the time differs from the first one beyond chance.
+    pub by_time: f64,
 }
+
+/// Means over the time of a trajectory: all of it, its first and its second half.
+type OverTime = [f64; 3];
 
 impl MeanRate {
     /// Half-width of the interval that is believed to hold the true rate. With a weak order of one or more the half step
     /// is off by no more than it differs from the whole one.
     pub(crate) fn error(&self) -> f64 {
         let [change, of_change] = self.by_step;
-        STANDARD_ERRORS * self.standard_error + change.abs() + of_change
+        let by_step = change.abs() + of_change;
+        STANDARD_ERRORS * self.standard_error + by_step + SLOW * self.by_time
     }
 
     /// Of the rates of all trajectories, with the whole and with the half step.
-    fn of(pairs: &[[f64; 2]]) -> Option<Self> {
+    fn of(pairs: &[[OverTime; 2]]) -> Option<Self> {
         let count = pairs.len() as f64;
-        let mean = |of: &dyn Fn(&[f64; 2]) -> f64| pairs.iter().map(of).sum::<f64>() / count;
-        let error = |of: &dyn Fn(&[f64; 2]) -> f64| {
+        let mean = |of: &dyn Fn(&[OverTime; 2]) -> f64| pairs.iter().map(of).sum::<f64>() / count;
+        let error = |of: &dyn Fn(&[OverTime; 2]) -> f64| {
             let middle = mean(of);
             let squares = pairs.iter().map(|pair| (of(pair) - middle).powi(2));
             (squares.sum::<f64>() / (count * (count - 1.0))).sqrt()
         };
-        let (fine, change) = (
-            |pair: &[f64; 2]| pair[1],
-            |pair: &[f64; 2]| pair[0] - pair[1],
-        );
+        let fine = |pair: &[OverTime; 2]| pair[1][0];
+        let change = |pair: &[OverTime; 2]| pair[0][0] - pair[1][0];
+        let halves = |pair: &[OverTime; 2]| pair[1][2] - pair[1][1];
+        let beyond = mean(&halves).abs() - STANDARD_ERRORS * error(&halves);
         let found = Self {
             value: mean(&fine),
             standard_error: error(&fine),
             by_step: [mean(&change), error(&change)],
+            by_time: beyond.max(0.0),
         };
         found.error().is_finite().then_some(found)
     }
@@ -125,7 +137,7 @@ pub(crate) fn exponent_along_trajectories(
     };
     let lanes = lanes.concat();
     let rate = |which: usize| {
-        let pairs: Vec<[f64; 2]> = lanes.iter().map(|rates| rates[which]).collect();
+        let pairs: Vec<[OverTime; 2]> = lanes.iter().map(|rates| rates[which]).collect();
         MeanRate::of(&pairs)
     };
     Ok(rate(0)
@@ -147,8 +159,10 @@ struct Follower<'a> {
 struct Bundle {
     states: Vec<Lanes>,
     deviations: Vec<Lanes>,
-    /// Growth of the logarithm of the deviation, and of areas, of each since counting began.
-    grown: [Lanes; 2],
+    /// Growth of the logarithm of the volume since the last renewal.
+    swollen: Lanes,
+    /// Of the logarithm of the deviation, and of volumes: weighted sums of their growth.
+    grown: [[Lanes; 3]; 2],
 }
 
 impl Bundle {
@@ -158,32 +172,45 @@ impl Bundle {
         Self {
             deviations: (0..states.len()).map(part).collect(),
             states,
-            grown: [[0.0; LANES]; 2],
+            swollen: [0.0; LANES],
+            grown: [[[0.0; LANES]; 3]; 2],
         }
     }
 
-    /// Makes deviations short, and notes how long they have become.
-    fn renew(&mut self) {
+    /// Makes deviations short, and counts how long they have become with these weights.
+    fn renew(&mut self, weights: OverTime) {
         for lane in 0..LANES {
             let parts = self.deviations.iter().map(|part| part[lane] * part[lane]);
             let length = parts.sum::<f64>().sqrt();
-            self.grown[0][lane] += length.ln();
+            let growths = [length.ln(), self.swollen[lane]];
+            for (grown, growth) in self.grown.iter_mut().zip(growths) {
+                for (sum, weight) in grown.iter_mut().zip(weights) {
+                    sum[lane] += weight * growth;
+                }
+            }
             for part in &mut self.deviations {
                 part[lane] /= length;
             }
         }
+        self.swollen = [0.0; LANES];
     }
+}
 
-    /// Forgets what has grown.
-    fn begin(&mut self) {
-        self.renew();
-        self.grown = [[0.0; LANES]; 2];
-    }
+/// Weights of a chunk among so many, over all of the time and its halves; those of each have the mean 1.
+fn weights(chunk: usize, chunks: usize) -> OverTime {
+    let of = |first: usize, count: usize| match chunk.checked_sub(first) {
+        Some(place) if place < count => {
+            1.0 - (std::f64::consts::TAU * (place as f64 + 0.5) / count as f64).cos()
+        }
+        _ => 0.0,
+    };
+    let half = chunks / 2;
+    [of(0, chunks), of(0, half), of(half, chunks - half)]
 }
 
 impl Follower<'_> {
     /// Exponent and divergence of each trajectory of a batch, each with both steps; `None` where one ran away.
-    fn batch(&self, number: usize) -> Result<Option<Vec<[[f64; 2]; 2]>>, Cancelled> {
+    fn batch(&self, number: usize) -> Result<Option<Vec<[[OverTime; 2]; 2]>>, Cancelled> {
         let dimension = self.system.dimension();
         let states = self.starts.batch(self.run.seed, number, dimension);
         let mut bundles = [Bundle::new(states.clone()), Bundle::new(states)];
@@ -195,16 +222,20 @@ impl Follower<'_> {
         let settle = (SETTLE * chunks as f64).ceil() as usize;
         for chunk in 0..chunks + settle {
             self.cancellation.check()?;
-            if chunk == settle {
-                bundles.iter_mut().for_each(Bundle::begin);
-            }
+            let weights = chunk
+                .checked_sub(settle)
+                .map(|counted| weights(counted, chunks));
+            let weights = weights.unwrap_or_default();
             stream.fill(&mut fine);
             let coarse = over_two_steps(&fine, channels);
             let [whole, half] = &mut bundles;
             self.advance(whole, step, &coarse);
             self.advance(half, 0.5 * step, &fine);
+            bundles.iter_mut().for_each(|one| one.renew(weights));
         }
-        let time = (chunks * CHUNK) as f64 * step;
+        let time = |count: usize| (count * CHUNK) as f64 * step;
+        let half = chunks / 2;
+        let times = [chunks, half, chunks - half].map(time);
         let is_lost = |bundle: &Bundle| {
             (0..LANES).any(|lane| {
                 let state: Vec<f64> = bundle.states.iter().map(|part| part[lane]).collect();
@@ -214,13 +245,15 @@ impl Follower<'_> {
         if bundles.iter().any(is_lost) {
             return Ok(None);
         }
-        let of_lane = |lane: usize| {
-            [0, 1].map(|which| bundles.each_ref().map(|one| one.grown[which][lane] / time))
+        let mean = |one: &Bundle, which: usize, lane: usize| {
+            [0, 1, 2].map(|part| one.grown[which][part][lane] / times[part])
         };
+        let of_lane =
+            |lane: usize| [0, 1].map(|which| bundles.each_ref().map(|one| mean(one, which, lane)));
         Ok(Some((0..LANES).map(of_lane).collect()))
     }
 
-    /// Steps with these normals, one row a step and noise, and a renewal.
+    /// Steps with these normals, one row a step and noise.
     fn advance(&self, bundle: &mut Bundle, step: f64, normals: &[Lanes]) {
         let channels = self.system.noises().len();
         let steps = match channels {
@@ -231,7 +264,6 @@ impl Follower<'_> {
             let row = number * channels..(number + 1) * channels;
             self.step(bundle, step, normals.get(row).unwrap_or(&[]));
         }
-        bundle.renew();
     }
 
     /// A step of stochastic Heun, and its derivative.
@@ -275,7 +307,7 @@ impl Follower<'_> {
         }
         let [now, then] = [slopes, later].map(|slopes| slopes.divergence());
         for lane in 0..LANES {
-            bundle.grown[1][lane] += 0.5 * step * (now[lane] + then[lane]);
+            bundle.swollen[lane] += 0.5 * step * (now[lane] + then[lane]);
         }
     }
 }

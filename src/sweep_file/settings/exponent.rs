@@ -16,6 +16,27 @@ const STEPS: f64 = 2e7;
 
 /// Reads `[exponent]` into what a family is asked for.
 pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, family: &mut Family) {
+    let by_paths = draft.exponent_method == Some(ExponentMethod::Trajectories);
+    let is_along = draft.exponent == Some(ExponentKind::Largest);
+    for (key, is_idle, remedy) in [
+        (
+            "method",
+            draft.exponent_method.is_some() && !is_along,
+            "leave it out, or write `kind = \"largest\"`",
+        ),
+        (
+            "steps",
+            draft.exponent_steps.is_some() && !(is_along && by_paths),
+            "leave it out, or write `method = \"trajectories\"`",
+        ),
+    ] {
+        if is_idle {
+            let title = format!("`exponent.{key}` says nothing of this exponent");
+            let place = reader.place(&["exponent", key]);
+            let diagnostic = Diagnostic::new(title).remedy(remedy);
+            reader.report(diagnostic.at(place, "this key"));
+        }
+    }
     if draft.exponent == Some(ExponentKind::Largest) {
         let is_known = is_along_density(reader, draft, family);
         let by = draft.exponent_method.unwrap_or(ExponentMethod::Modes);
