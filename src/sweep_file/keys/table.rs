@@ -240,7 +240,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("exponent.kind", Kind::Choice(ExponentKind::words), Rule("no exponent"), optional!(exponent),
         "`fixed-point`: the largest Lyapunov exponent of a fixed point that multiplicative noise leaves alone, at every value, and the values at \
          which it passes zero as rows `DB` (docs/exponents.md). On one axis or two. \
-         `largest`: that along the stationary density of a smooth system, with its rows `DB` and the mean divergence; by the generator."),
+         `largest`: that along the stationary density of a smooth system, with its rows `DB` and the mean divergence."),
     key("exponent.method", Kind::Choice(ExponentMethod::words), Rule("`modes`"), optional!(exponent_method),
         "How the exponent along the density (`largest`) is worked out. `modes`: from the density of state and direction, on one axis or two. \
          `trajectories`: by small deviations from free trajectories, on up to four axes, with a standard error."),
