@@ -33,7 +33,7 @@ pub(super) fn stability_file(
         number(first, |row: &Row<'_>| row.1.values[0]),
         number(second, |row: &Row<'_>| row.1.values[1]),
         number("error", |row: &Row<'_>| row.1.error),
-        word("zero", |row: &Row<'_>| row.0.kind.name()),
+        word("method", |row: &Row<'_>| row.0.kind.name()),
     ]);
     Ok(Some((NAME.to_owned(), columns.csv(&rows)?)))
 }

@@ -39,7 +39,7 @@ pub(super) fn run(
     let content = stored.content(&spec.problem)?;
     let (plane, curves) = match &content {
         StoredPlaneContent::Map(map) => (&map.plane, map.curves.as_slice()),
-        StoredPlaneContent::Curves(plane, curves, _) => (plane, curves.as_slice()),
+        StoredPlaneContent::Curves(plane, curves, _) => (&**plane, curves.as_slice()),
     };
     let crossed = crossed(&arguments.with, plane, family)?;
     let sweeps: Vec<SweepInPlane> = crossed.iter().map(|one| one.sweep.clone()).collect();

@@ -343,34 +343,37 @@ impl Field<'_> {
 
     /// The direction in which it rises fastest at a place.
     fn uphill(&self, at: [f64; 2]) -> Option<[f64; 2]> {
-        let slopes = [[1.0, 0.0], [0.0, 1.0]].map(|along| self.slope(at, along));
-        let slopes = [slopes[0]?, slopes[1]?];
-        let size = slopes[0].hypot(slopes[1]);
-        (size > 0.0 && size.is_finite()).then(|| slopes.map(|slope| slope / size))
+        let (slopes, size) = self.gradient(at)?;
+        Some(slopes.map(|slope| slope / size))
     }
 
-    /// Its change along a direction of length one, from both sides of a place where it is known there.
-    fn slope(&self, at: [f64; 2], along: [f64; 2]) -> Option<f64> {
-        let off = |off: f64| {
-            let place = [0, 1].map(|k| at[k] + off * along[k]);
-            let is_inside = place.iter().all(|part| (0.0..=1.0).contains(part));
-            let [value, _] = (self.value)(place).filter(|_| is_inside)?;
-            Some((off, value))
+    /// Its change along both sides of the box at a place, and the length of that, which is not zero.
+    fn gradient(&self, at: [f64; 2]) -> Option<([f64; 2], f64)> {
+        let slopes = [self.slope(at, 0)?, self.slope(at, 1)?];
+        let size = slopes[0].hypot(slopes[1]);
+        (size > 0.0 && size.is_finite()).then_some((slopes, size))
+    }
+
+    /// Its change along a side of the box, from both sides of a place as far as it is known there.
+    fn slope(&self, at: [f64; 2], side: usize) -> Option<f64> {
+        let value = |off: f64| {
+            let mut place = at;
+            place[side] += off;
+            Some((off, (self.value)(place)?[0]))
         };
-        let (low, below) = off(-SLOPE).or_else(|| off(0.0))?;
-        let (high, above) = off(SLOPE).or_else(|| off(0.0))?;
+        let (low, below) = value(-SLOPE).or_else(|| value(0.0))?;
+        let (high, above) = value(SLOPE).or_else(|| value(0.0))?;
         (high > low).then(|| (above - below) / (high - low))
     }
 
     /// Error across the curve of a point on it, in sides of the box.
     fn error(&self, at: [f64; 2]) -> f64 {
-        let uphill = self.uphill(at);
-        let slope = uphill.and_then(|uphill| self.slope(at, uphill));
         let own = (self.value)(at).map_or(f64::INFINITY, |[value, error]| value.abs() + error);
         let sides = self.plane.sides().iter();
         let rounding = sides.map(|side| side.from.abs().max(side.to.abs()) / side.length());
         let rounding = ROUNDING * rounding.fold(1.0, f64::max);
-        let error = slope.map_or(f64::INFINITY, |slope| own / slope.abs());
+        let size = self.gradient(at).map_or(0.0, |(_, size)| size);
+        let error = own / size;
         // What is not a number is not small.
         if error.is_finite() {
             error + rounding
