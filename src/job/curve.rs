@@ -51,7 +51,7 @@ impl<'a> CurveJob<'a> {
             FirstRow::Stability(_) => None,
         };
         let is_lost = start.is_none() && matches!(row, FirstRow::Shape(_));
-        if is_lost || !row.has_curve(family) {
+        if is_lost || !row.has_curve(result) {
             return Err(no_indicator(row, result));
         }
         let job = Self {

@@ -8,28 +8,11 @@ use super::{MethodError, Problem};
 use crate::cancellation::Cancellation;
 use crate::continuation::measure::{DIVERGENCE, EXPONENT};
 use crate::continuation::{
-    Finding, Measure, MeasureColumn, MeasureKind, PointStatus, Session, Solution, SolveReport,
-    SourceError,
+    Finding, Measure, PointStatus, Session, Solution, SolveReport, SourceError,
 };
 use crate::exponent::{Exponent, ExponentError, largest, of_family};
 use crate::monte_carlo::{TangentRun, exponent_along_trajectories, relaxation};
-use crate::system::{ExponentMethod, Family, FixedPointFault};
-
-/// The columns of exponents, where a family asks for them.
-pub(super) fn exponent_columns(family: &Family) -> impl Iterator<Item = MeasureColumn> {
-    let wanted: &[MeasureKind] = match (
-        &family.questions.fixed_point,
-        family.questions.largest_exponent,
-    ) {
-        (Some(_), _) => &[EXPONENT],
-        (None, Some(_)) => &[EXPONENT, DIVERGENCE],
-        (None, None) => &[],
-    };
-    wanted.iter().map(|&kind| MeasureColumn {
-        kind,
-        of: String::new(),
-    })
-}
+use crate::system::{ExponentMethod, FixedPointFault};
 
 /// A session whose reports have the exponent.
 pub(super) struct WithExponents {

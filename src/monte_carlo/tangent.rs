@@ -1,11 +1,12 @@
 //! The largest Lyapunov exponent along free trajectories: beside each path goes a small deviation from it, by the
-//! derivative of the very step that moves the path, and is made short again before it grows large; the mean rate at which
-//! its logarithm grows is the exponent (G. Benettin, L. Galgani, A. Giorgilli and J.-M. Strelcyn, Meccanica 15, 1980).
+//! derivative of the very step that moves the path, and is made short again before it grows large; the mean rate at
+//! which its logarithm grows is the exponent (G. Benettin, L. Galgani, A. Giorgilli and J.-M. Strelcyn, Meccanica 15,
+//! 1980).
 //!
 //! Every trajectory is followed twice under the same noise, with a step and with half of it: what that changes is the
-//! error of the step. The means of the trajectories, which know nothing of each other, tell the standard error. A mean over
-//! time has weights that are small at both ends, 1 - cos 2πt/T, so that what turns evenly averages out; and if its halves
-//! differ by more than by chance, deviations had not settled, which is an error too.
+//! error of the step. The means of the trajectories, which know nothing of each other, tell the standard error. A mean
+//! over time has weights that are small at both ends, 1 - cos 2πt/T, so that what turns evenly averages out; and if its
+//! halves differ by more than by chance, deviations had not settled, which is an error too.
 
 use rayon::prelude::*;
 
@@ -76,8 +77,8 @@ pub(crate) struct MeanRate {
 type OverTime = [f64; 3];
 
 impl MeanRate {
-    /// Half-width of the interval that is believed to hold the true rate. With a weak order of one or more the half step
-    /// is off by no more than it differs from the whole one.
+    /// Half-width of the interval that is believed to hold the true rate. With a weak order of one or more the half
+    /// step is off by no more than it differs from the whole one.
     pub(crate) fn error(&self) -> f64 {
         let [change, of_change] = self.by_step;
         let by_step = change.abs() + of_change;

@@ -74,7 +74,7 @@ fn all_rows(result: &SweepResult) -> impl Iterator<Item = FirstRow<'_>> {
 }
 
 fn followable(result: &SweepResult) -> impl Iterator<Item = FirstRow<'_>> {
-    all_rows(result).filter(|row| row.has_curve(&result.subject.family))
+    all_rows(result).filter(|row| row.has_curve(result))
 }
 
 fn by_label<'r>(label: &str, result: &'r SweepResult) -> Result<FirstRow<'r>, Report> {
@@ -89,9 +89,8 @@ fn by_label<'r>(label: &str, result: &'r SweepResult) -> Result<FirstRow<'r>, Re
 
 /// The rows that curves can be followed from.
 fn rows_in_words(result: &SweepResult) -> String {
-    let family = &result.subject.family;
     let rows: Vec<String> = followable(result)
-        .map(|row| format!("{} ({})", row.label(), row.words(family)))
+        .map(|row| format!("{} ({})", row.label(), row.words(result)))
         .collect();
     if rows.is_empty() {
         "no row of this sweep has an indicator to follow".to_owned()

@@ -1,8 +1,7 @@
 //! Rows of a sweep that curves are followed from.
 
 use crate::continuation::curve::CurveOrigin;
-use crate::continuation::{BifurcationStatus, LevelCrossing, Located};
-use crate::system::Family;
+use crate::continuation::{BifurcationStatus, LevelCrossing, Located, SweepResult};
 
 /// A row that can be followed: a P-bifurcation, or a D-bifurcation of a fixed point.
 #[derive(Debug, Clone, Copy)]
@@ -31,10 +30,10 @@ impl<'r> FirstRow<'r> {
     }
 
     /// Whether there is a function whose zeros can be followed.
-    pub(super) fn has_curve(self, family: &Family) -> bool {
+    pub(super) fn has_curve(self, result: &SweepResult) -> bool {
         match self {
             Self::Shape(row) => row.zero.is_some(),
-            Self::Stability(_) => family.questions.fixed_point.is_some(),
+            Self::Stability(_) => result.subject.family.questions.fixed_point.is_some(),
         }
     }
 
@@ -46,9 +45,12 @@ impl<'r> FirstRow<'r> {
     }
 
     /// What is zero there, with what it is of.
-    pub(super) fn words(self, family: &Family) -> String {
+    pub(super) fn words(self, result: &SweepResult) -> String {
         match self {
-            Self::Shape(row) => format!("{} of {}", row.method(), row.observable.name(family)),
+            Self::Shape(row) => {
+                let family = &result.subject.family;
+                format!("{} of {}", row.method(), row.observable.name(family))
+            }
             Self::Stability(_) => "exponent of the fixed point".to_owned(),
         }
     }

@@ -79,8 +79,8 @@ fn the_oscillator_of_duffing_and_van_der_pol_has_the_exponent_of_another_program
     assert_holds(exponent, -0.16283, 0.01);
 }
 
-/// The normal form of Hopf's bifurcation with noise on both axes: neighbouring paths come together with little shear and
-/// run apart with much of it (P. H. Baxendale, Probability Theory and Related Fields 99, 1994).
+/// The normal form of Hopf's bifurcation with noise on both axes: neighbouring paths come together with little shear
+/// and run apart with much of it (P. H. Baxendale, Probability Theory and Related Fields 99, 1994).
 #[test]
 fn shear_makes_neighbouring_paths_run_apart() {
     let exponent = |shear: f64, steps: f64| {
