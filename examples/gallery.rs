@@ -9,8 +9,11 @@ use std::path::Path;
 use std::time::Instant;
 
 use pbif::cancellation::Cancellation;
+use pbif::continuation::SweepResult;
+use pbif::continuation::curve::{CurveOrigin, Plane};
 use pbif::figure::Figures;
-use pbif::sweep_file::{StartingFile, SweepFile, starting_files};
+use pbif::job::curve_rows;
+use pbif::sweep_file::{StartingFile, Sweep, SweepFile, starting_files};
 
 const BEGINNING: &str = "# Gallery\n\n\
     Systems from the literature as sweep files, in `sweeps/gallery/`. Each is a starting file too: `pbif new mine.toml --like NAME` writes a copy\n\
@@ -87,6 +90,37 @@ fn section(file: &StartingFile, images: &Path) -> Result<String, Box<dyn std::er
         let words = format!("{drawn} of {} against {parameter}", family.axis(0));
         writeln!(text, "\n![{words}](images/gallery/{picture})")?;
     }
+    text += &stability(&sweep, &found, file, images)?;
     writeln!(text, "\n`pbif sweep sweeps/gallery/{}.toml`", file.name)?;
+    Ok(text)
+}
+
+/// The picture of the curves of a fixed point in two parameters, where the file asks for them.
+fn stability(
+    sweep: &Sweep,
+    found: &SweepResult,
+    file: &StartingFile,
+    images: &Path,
+) -> Result<String, Box<dyn std::error::Error>> {
+    let family = sweep.problem.family();
+    let (Some(curve), Some(_)) = (&sweep.settings.curve, &family.questions.fixed_point) else {
+        return Ok(String::new());
+    };
+    let (parameter, (from, to)) = (family.parameter(), curve.first);
+    let plane = Plane::new(
+        (parameter, from, to),
+        (&curve.parameter, curve.from, curve.to),
+    )?;
+    let mut text = String::new();
+    for row in curve_rows(sweep, found, false)? {
+        let origin = CurveOrigin::from(row);
+        let figures = Figures::of_curves((&plane, &[]), (&origin, &[]), family, file.title());
+        for figure in figures.draw("curve")? {
+            let picture = format!("{}_curve.svg", file.name);
+            std::fs::write(images.join(&picture), figure.svg())?;
+            let words = format!("Curves in the plane of {parameter} and {}", curve.parameter);
+            writeln!(text, "\n![{words}](images/gallery/{picture})")?;
+        }
+    }
     Ok(text)
 }

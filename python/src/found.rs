@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use numpy::{IntoPyArray, PyArrayMethods};
-use pbif::continuation::{Located, Point, SweepResult};
+use pbif::continuation::{Point, SweepResult};
 use pbif::explore::StoredPage;
 use pbif::figure::Figures;
-use pbif::job::{CurveJob, curve_rows};
+use pbif::job::{CurveJob, FirstRow, curve_rows};
 use pbif::run::{
     Attribute, CURVES, DataSet, ExportFormat, RunError, StoredRun, doubt_in_words, export,
     finding_in_words,
@@ -323,14 +323,14 @@ impl Found {
         let sweep = sweep.and_then(|settings| settings.fixed());
         let sweep = Arc::new(sweep.map_err(|report| error::input(py, &report))?);
         let rows = curve_rows(&sweep, &self.result, true);
-        let rows: Vec<&Located> = rows.map_err(|report| error::input(py, &report))?;
+        let rows: Vec<FirstRow<'_>> = rows.map_err(|report| error::input(py, &report))?;
         let row = *rows
             .first()
             .ok_or_else(|| error::other(py, "no row to follow"))?;
         let job = CurveJob::new(&sweep, &self.result, row);
         let job = job.map_err(|report| error::input(py, &report))?;
         let plane = job.plane().clone();
-        let name = format!("{}-{}", row.label, plane.sides()[1].parameter);
+        let name = format!("{}-{}", row.label(), plane.sides()[1].parameter);
         let (home, holder) = match (out, &self.home) {
             (None, Some(home)) => {
                 let below = home.path().join(CURVES).join(name);

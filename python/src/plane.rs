@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use numpy::{IntoPyArray, PyArrayMethods};
 use pbif::cancellation::Cancellation;
-use pbif::continuation::Located;
 use pbif::continuation::curve::{Curve, CurveOrigin, codimension_two};
 use pbif::continuation::map::RegimeMap;
 use pbif::explore::StoredPage;
 use pbif::figure::Figures;
+use pbif::job::FirstRow;
 use pbif::run::{StoredPlane, StoredPlaneContent};
 use pbif::sweep_file::{Sweep, SweepFile};
 use pyo3::prelude::*;
@@ -45,13 +45,13 @@ impl Plane {
     pub(crate) fn of_curves(
         sweep: &Arc<Sweep>,
         (plane, curves): (pbif::continuation::curve::Plane, Vec<Curve>),
-        row: &Located,
+        row: FirstRow<'_>,
         home: Arc<Home>,
     ) -> Self {
         Self {
             sweep: Arc::clone(sweep),
+            content: StoredPlaneContent::Curves(Box::new(plane.clone()), curves, CurveOrigin::from(row)),
             plane,
-            content: StoredPlaneContent::Curves(curves, CurveOrigin::from(row)),
             home,
             holder: None,
         }
@@ -64,7 +64,7 @@ impl Plane {
     fn curves_of(&self) -> &[Curve] {
         match &self.content {
             StoredPlaneContent::Map(map) => &map.curves,
-            StoredPlaneContent::Curves(curves, _) => curves,
+            StoredPlaneContent::Curves(_, curves, _) => curves,
         }
     }
 
@@ -73,8 +73,8 @@ impl Plane {
         let (family, title) = (self.sweep.problem.family(), settings.title.as_str());
         let figures = match &self.content {
             StoredPlaneContent::Map(map) => Figures::of_map(map, &[], title),
-            StoredPlaneContent::Curves(curves, origin) => {
-                Figures::of_curves(curves, (origin, &[]), family, title)
+            StoredPlaneContent::Curves(plane, curves, origin) => {
+                Figures::of_curves((plane, curves), (origin, &[]), family, title)
             }
         };
         of(&figures.with_style(&settings.figures.style))
@@ -220,7 +220,7 @@ impl Plane {
                 StoredPlaneContent::Map(map) => {
                     StoredPage::of_map(&self.sweep, map, &cancellation, &done)
                 }
-                StoredPlaneContent::Curves(curves, origin) => StoredPage::of_curves(
+                StoredPlaneContent::Curves(_, curves, origin) => StoredPage::of_curves(
                     &self.sweep,
                     &self.plane,
                     (curves, &origin.label),

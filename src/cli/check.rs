@@ -14,6 +14,7 @@ use crate::method::{
 use crate::run::fixed_point_in_words;
 use crate::stationary::generator::RateError;
 use crate::sweep_file::{MethodKind, Sweep, bytes_in_words, machine_memory};
+use crate::system::ExponentMethod;
 
 /// Points beyond which a sweep is said to be long.
 const MANY_POINTS: usize = 1000;
@@ -188,8 +189,15 @@ fn points(spec: &Sweep) -> String {
 /// What is worked out of a fixed point, with the exponents at both ends.
 fn exponent(spec: &Sweep) -> Option<String> {
     let family = spec.problem.family();
-    if family.questions.largest_exponent {
-        return Some(along_density(spec));
+    match family.questions.largest_exponent {
+        Some(ExponentMethod::Modes) => return Some(along_density(spec)),
+        Some(ExponentMethod::Trajectories) => {
+            return Some(format!(
+                "{ALONG}; {:.0e} steps of trajectories at each",
+                family.questions.exponent_steps
+            ));
+        }
+        None => {}
     }
     let state = fixed_point_in_words(family)?;
     let (from, to) = family.ends();
@@ -205,9 +213,12 @@ fn exponent(spec: &Sweep) -> Option<String> {
     ))
 }
 
+/// What is worked out along the density.
+const ALONG: &str = "exponent: the largest Lyapunov exponent along the stationary density at every value, and its zeros as rows `DB`";
+
 /// What is worked out along the density, and what that takes.
 fn along_density(spec: &Sweep) -> String {
-    let words = "exponent: the largest Lyapunov exponent along the stationary density at every value, and its zeros as rows `DB`";
+    let words = ALONG;
     let MethodOptions::Generator(options) = spec.settings.method.chosen() else {
         return words.to_owned();
     };

@@ -11,11 +11,11 @@ use super::stored::{Override, Stored, set};
 use super::{CommandError, load, tell};
 use crate::cancellation::Cancellation;
 use crate::continuation::curve::CurveTree;
-use crate::continuation::{Located, SourceError, SweepResult};
-use crate::job::{CurveJob, Done, Job as _, JobError, Outcome, Start, curve_rows};
+use crate::continuation::{SourceError, SweepResult};
+use crate::job::{CurveJob, Done, FirstRow, Job as _, JobError, Outcome, Start, curve_rows};
 use crate::run::{CURVES, RunError};
 use crate::sweep_file::{SolveError, Sweep, SweepFile, list};
-pub(super) use words::codimension_line;
+pub(super) use words::{codimension_line, stability_lines};
 
 /// Sections of a run's sweep that may be set anew.
 const SECTIONS: [&str; 4] = ["detect", "locate", "figures", "curve"];
@@ -111,16 +111,16 @@ struct Following<'a> {
 
 impl Following<'_> {
     /// Follows all rows. Of several, one that cannot be followed keeps none of the others from it.
-    fn all(&self, rows: &[&Located]) -> Result<Outcome, CommandError> {
+    fn all(&self, rows: &[FirstRow<'_>]) -> Result<Outcome, CommandError> {
         let mut worst = Outcome::Complete;
-        for row in rows {
+        for &row in rows {
             match self.follow_row(row) {
                 Ok(Outcome::Interrupted) => return Ok(Outcome::Interrupted),
                 Ok(Outcome::Partial) => worst = Outcome::Partial,
                 Ok(Outcome::Complete) => {}
                 Err(error) if rows.len() > 1 && error.is_input() => {
                     let text = super::render(error, super::is_styled());
-                    tell(false, &format!("{} is not followed\n{text}", row.label));
+                    tell(false, &format!("{} is not followed\n{text}", row.label()));
                     worst = Outcome::Partial;
                 }
                 Err(error) => return Err(error),
@@ -129,10 +129,10 @@ impl Following<'_> {
         Ok(worst)
     }
 
-    fn follow_row(&self, row: &Located) -> Result<Outcome, CommandError> {
+    fn follow_row(&self, row: FirstRow<'_>) -> Result<Outcome, CommandError> {
         let mut job = CurveJob::new(self.spec, self.result, row)?;
         let second = &job.plane().sides()[1].parameter;
-        let home = (self.home)(&format!("{}-{second}", row.label));
+        let home = (self.home)(&format!("{}-{second}", row.label()));
         let how = (self.work, self.cancellation);
         let start = if self.resume {
             job.start(&home)

@@ -8,7 +8,7 @@ use super::args::{ExploreArguments, SweepInput};
 use super::progress::Meter;
 use super::stored::{Stored, set};
 use super::{CommandError, Outcome, tell};
-use crate::explore::{ExploreError, LiveServer, StoredPage};
+use crate::explore::{LiveServer, StoredPage};
 use crate::job;
 use crate::run::{CURVES, StoredPlane, StoredPlaneContent, write_anywhere};
 use crate::sweep_file::{Diagnostic, SweepFile};
@@ -82,9 +82,7 @@ fn of_plane(stored: &StoredPlane, arguments: &ExploreArguments) -> Result<Outcom
     };
     let page = threads.install(|| match &content {
         StoredPlaneContent::Map(map) => StoredPage::of_map(&sweep, map, &cancellation, &count),
-        StoredPlaneContent::Curves(curves, origin) => {
-            let plane = curves.first().map(|curve| &curve.plane);
-            let plane = plane.ok_or(ExploreError::NoPlane)?;
+        StoredPlaneContent::Curves(plane, curves, origin) => {
             let curves = (curves.as_slice(), origin.label.as_str());
             StoredPage::of_curves(&sweep, plane, curves, &cancellation, &count)
         }

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::CommandError;
-use super::curve::codimension_line;
+use super::curve::{codimension_line, stability_lines};
 use super::jobs::{Printed, files};
 use super::sweep::shard_in_words;
 use crate::continuation::BifurcationStatus;
@@ -79,6 +79,7 @@ fn summary(map: &RegimeMap) -> String {
     for (index, curve) in map.curves.iter().enumerate() {
         text += &line(map, index, curve);
     }
+    text += &stability_lines(&map.subject.family, &map.plane);
     for point in map.codimension_two() {
         text += &codimension_line(&point, &map.plane, &map.subject.family);
     }

@@ -143,7 +143,7 @@ pub(super) fn asked_of(family: &Family) -> Vec<MeasureLevel> {
             })
         })
     });
-    let exponent = family.questions.largest_exponent.then(|| MeasureLevel {
+    let exponent = family.questions.largest_exponent.map(|_| MeasureLevel {
         measure: EXPONENT.word.to_owned(),
         level: 0.0,
     });

@@ -10,7 +10,7 @@ use super::print::{Figure, Print};
 use super::style::FigureStyle;
 use crate::compare::Comparison;
 use crate::continuation::SweepResult;
-use crate::continuation::curve::{Curve, CurveOrigin, SweepInPlane};
+use crate::continuation::curve::{Curve, CurveOrigin, Plane, SweepInPlane};
 use crate::continuation::map::RegimeMap;
 use crate::system::{Family, Model, ParameterValues};
 
@@ -67,15 +67,18 @@ impl<'a> Figures<'a> {
     }
 
     /// The figure `curve` of curves in one plane, the first of which was begun at a row of a sweep over its first
-    /// parameter; none without a curve. What `sweeps` over one of the parameters located is marked. `family` gives
-    /// names and symbols.
+    /// parameter, and of those of a fixed point; none without a curve. What `sweeps` over one of the parameters located
+    /// is marked. `family` gives names and symbols.
     pub fn of_curves(
-        curves: &'a [Curve],
+        (plane, curves): (&'a Plane, &'a [Curve]),
         (row, sweeps): (&'a CurveOrigin, &'a [SweepInPlane]),
         family: &'a Family,
         title: &'a str,
     ) -> Self {
-        Self::new(title, kinds::curve::sketches(curves, (row, sweeps), family))
+        Self::new(
+            title,
+            kinds::curve::sketches((plane, curves), (row, sweeps), family),
+        )
     }
 
     /// The figure `friction_NAME` of a model with a friction law: left the force against the velocity, sliding steadily

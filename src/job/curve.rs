@@ -1,15 +1,18 @@
-//! The curves from a located row: the same P-bifurcation in the plane of the swept and a second parameter.
+//! The curves from a located row: the same bifurcation in the plane of the swept and a second parameter.
 
 mod refusals;
+mod row;
 
 pub(crate) use refusals::check_curves;
 pub use refusals::curve_rows;
+pub use row::FirstRow;
 
 use super::{Context, Job, JobError, Outcome};
 use crate::continuation::curve::{
     Curve, CurveError, CurveOptions, CurveOrigin, CurveStart, CurveTree, Plane, follow_all,
+    stability_curves,
 };
-use crate::continuation::{DensitySource, Located, SourceError, SweepResult};
+use crate::continuation::{DensitySource, SourceError, SweepResult};
 use crate::figure::{Figure, Figures};
 use crate::run::{JobFolder, JournalledSource, Layout, RunError, curve_files, format_number};
 use crate::sweep_file::{CurveSettings, Diagnostic, Report, Sweep};
@@ -19,9 +22,12 @@ use refusals::{check_corners, no_indicator, plane, refusal, refused_plane, which
 pub struct CurveJob<'a> {
     sweep: &'a Sweep,
     curve: &'a CurveSettings,
-    row: &'a Located,
+    row: FirstRow<'a>,
     plane: Plane,
-    start: CurveStart,
+    /// Value of the second parameter of the sweep.
+    held: f64,
+    /// Where the curve of a P-bifurcation starts.
+    start: Option<CurveStart>,
     source: Option<Box<dyn DensitySource>>,
     /// Solves that are stored.
     kept: usize,
@@ -32,7 +38,7 @@ impl<'a> CurveJob<'a> {
     ///
     /// # Errors
     /// A report where the sweep file has no `[curve]`, the row no indicator, or the box is not one to follow it in.
-    pub fn new(sweep: &'a Sweep, result: &SweepResult, row: &'a Located) -> Result<Self, Report> {
+    pub fn new(sweep: &'a Sweep, result: &SweepResult, row: FirstRow<'a>) -> Result<Self, Report> {
         let family = sweep.problem.family();
         let curve = sweep.settings.curve.as_ref();
         let (curve, plane) = curve
@@ -40,13 +46,20 @@ impl<'a> CurveJob<'a> {
             .ok_or_else(|| which_parameter(sweep))?;
         let held = family.fixed().find(|(name, _)| *name == curve.parameter);
         let held = held.map_or(f64::NAN, |(_, value)| value);
-        let start = CurveStart::from_row(row, held, sweep.problem.subject());
-        let start = start.ok_or_else(|| no_indicator(row, result))?;
+        let start = match row {
+            FirstRow::Shape(row) => CurveStart::from_row(row, held, sweep.problem.subject()),
+            FirstRow::Stability(_) => None,
+        };
+        let is_lost = start.is_none() && matches!(row, FirstRow::Shape(_));
+        if is_lost || !row.has_curve(result) {
+            return Err(no_indicator(row, result));
+        }
         let job = Self {
             sweep,
             curve,
             row,
             plane,
+            held,
             start,
             source: None,
             kept: 0,
@@ -57,7 +70,7 @@ impl<'a> CurveJob<'a> {
     }
 
     /// The row that the first curve starts from.
-    pub fn row(&self) -> &'a Located {
+    pub fn row(&self) -> FirstRow<'a> {
         self.row
     }
 
@@ -75,9 +88,21 @@ impl<'a> CurveJob<'a> {
         }
     }
 
+    /// No curve besides the D-bifurcations of the box, which every plane has; one of them must pass the start.
+    fn stability(&self) -> Result<CurveTree, JobError> {
+        let at = self.plane.shares([self.row.value(), self.held]);
+        let curves = stability_curves(self.sweep.problem.family(), &self.plane);
+        if curves.iter().any(|curve| curve.passes(&self.plane, at)) {
+            return Ok(CurveTree::default());
+        }
+        let reason =
+            "no line on which the exponent of the fixed point is zero passes it".to_owned();
+        Err(refusal(CurveError::NoStart { reason }).into())
+    }
+
     /// Refuses a box that the start is not in.
     fn check_box(&self) -> Result<(), Report> {
-        let (side, value) = (&self.plane.sides()[0], self.start.values[0]);
+        let (side, value) = (&self.plane.sides()[0], self.row.value());
         if (side.from..=side.to).contains(&value) {
             return Ok(());
         }
@@ -85,7 +110,7 @@ impl<'a> CurveJob<'a> {
         let value = format_number(value);
         let title = format!(
             "{} is not in the box: {parameter} is {value} there, and the box goes from {from} to {to}",
-            self.row.label,
+            self.row.label(),
         );
         let remedy = format!("give `--first-from` and `--first-to` on either side of {value}");
         Err(Diagnostic::new(title).remedy(remedy).into())
@@ -107,8 +132,8 @@ impl Job for CurveJob<'_> {
         format!(
             "{}\n[followed]\nrow = \"{}\"\nstart = {:?}\nsecond = \"{}\"\nbox = [{}]\nstep = {:?}\nbranches = {}\n",
             self.sweep.to_toml(),
-            self.row.label,
-            self.start.values,
+            self.row.label(),
+            [self.row.value(), self.held],
             self.curve.parameter,
             sides.join(", "),
             self.curve.step,
@@ -139,6 +164,9 @@ impl Job for CurveJob<'_> {
         if self.kept > 0 {
             context.say(&format!("going on after {} solves", self.kept));
         }
+        let Some(start) = &self.start else {
+            return self.stability().map(Some);
+        };
         let [first, second] = self.plane.sides().each_ref().map(|side| &side.parameter);
         let mut met = 0;
         let mut observer = |values: [f64; 2]| {
@@ -152,7 +180,7 @@ impl Job for CurveJob<'_> {
             &JournalledSource::new(source, &journal),
             &self.plane,
             &self.sweep.detector(),
-            &self.start,
+            start,
             &self.options(),
             context.cancellation,
             &mut observer,
@@ -195,7 +223,8 @@ impl Job for CurveJob<'_> {
     fn figures(&self, found: &CurveTree, _: &Context<'_>) -> Vec<Figure> {
         let (family, settings) = (self.sweep.problem.family(), &self.sweep.settings);
         let origin = CurveOrigin::from(self.row);
-        Figures::of_curves(&found.curves, (&origin, &[]), family, &settings.title)
+        let curves = (&self.plane, found.curves.as_slice());
+        Figures::of_curves(curves, (&origin, &[]), family, &settings.title)
             .with_style(&settings.figures.style)
             .draw_all()
     }

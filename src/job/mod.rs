@@ -50,9 +50,9 @@ use crate::run::{Ending, JobFolder, Layout, PhaseSeconds, RunError, clear_after_
 use crate::sweep_file::{Report, Sweep};
 
 pub use compare::CompareJob;
-pub use curve::CurveJob;
 pub(crate) use curve::check_curves;
 pub use curve::curve_rows;
+pub use curve::{CurveJob, FirstRow};
 pub use map::MapJob;
 pub(crate) use map::MapShardJob;
 pub use sweep::SweepJob;

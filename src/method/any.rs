@@ -4,6 +4,7 @@ use super::exponents::WithExponents;
 use super::{GeneratorSource, MethodError, MethodOptions, MonteCarloSource, Problem, SgcmSource};
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, Session, SourceError, Subject, Want};
+use crate::system::ExponentMethod;
 
 /// A source of densities by one of the methods.
 pub enum MethodSource {
@@ -51,6 +52,14 @@ impl MethodSource {
         }
     }
 
+    fn problem(&self) -> &Problem {
+        match self {
+            Self::Generator(source) => source.problem(),
+            Self::Sgcm(source) => source.problem(),
+            Self::MonteCarlo(source) => source.problem(),
+        }
+    }
+
     fn source(&self) -> &dyn DensitySource {
         match self {
             Self::Generator(source) => source.as_ref(),
@@ -71,13 +80,15 @@ impl DensitySource for MethodSource {
 
     fn open(&self, cancellation: &Cancellation) -> Box<dyn Session> {
         let session = self.source().open(cancellation);
-        let family = &self.subject().family;
-        if family.questions.fixed_point.is_none() {
+        let questions = &self.subject().family.questions;
+        let by_paths = questions.largest_exponent == Some(ExponentMethod::Trajectories);
+        if questions.fixed_point.is_none() && !by_paths {
             return session;
         }
         Box::new(WithExponents {
             session,
-            family: family.clone(),
+            problem: self.problem().clone(),
+            cancellation: cancellation.clone(),
             method: self.method(),
             was_solved: false,
         })

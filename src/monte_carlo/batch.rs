@@ -27,6 +27,7 @@ pub(super) enum Purpose {
     Passage = 7,
     PassageStart = 8,
     Chance = 9,
+    Tangent = 10,
 }
 
 /// Key of one batch's stream.

@@ -2,7 +2,8 @@
 //!
 //! [`relaxation()`] measures how long a system remembers; [`ergodic()`] averages a fixed number of long trajectories
 //! over time, [`ensemble()`] counts many at one time; [`first_passages`] follows paths until they enter a region;
-//! [`sample_path`] follows a single one, to be looked at; `step_bias` finds what a time step does to the density.
+//! [`sample_path`] follows a single one, to be looked at; `exponent_along_trajectories` finds
+//! how fast neighbouring ones run apart; `step_bias` finds what a time step does to the density.
 //!
 //! # Decisions
 //!
@@ -20,6 +21,7 @@ mod lookup;
 mod passage;
 mod path;
 mod relaxation;
+mod tangent;
 #[cfg(test)]
 mod tests;
 mod walk;
@@ -33,6 +35,7 @@ pub(crate) use halving::{BiasedQuantity, StepBias, TOLERATED_BIAS, automatic_ste
 pub use passage::{PassageRun, PassageStart, SteadyStart, first_passages};
 pub use path::{PathRun, SamplePath, sample_path};
 pub use relaxation::{Relaxation, relaxation};
+pub(crate) use tangent::{TangentRun, exponent_along_trajectories};
 pub use walk::PassageTarget;
 
 use crate::space::CellSpace;

@@ -3,6 +3,7 @@
 use super::columns::{Columns, number, word};
 use super::curve::{self, CurveRow, curve_json, curve_name, rows};
 use super::number::{format_number, format_with_error};
+use super::stability::stability_file;
 use super::{RunError, latex, plane_file};
 use crate::continuation::curve::{
     CodimensionTwo, Curve, CurveOrigin, CurveTree, Plane, codimension_two,
@@ -34,14 +35,16 @@ pub(super) fn plane_files(
 ) -> Result<Vec<(String, String)>, RunError> {
     let points = codimension_two_csv(family, plane, curves)?;
     let rounded = codimension_two_tex(family, plane, curves);
-    Ok(vec![
+    let mut files = vec![
         (
             "curves.csv".to_owned(),
             several_csv(family, plane, curves, starts)?,
         ),
         ("codimension_two.csv".to_owned(), points),
         ("codimension_two.tex".to_owned(), rounded),
-    ])
+    ];
+    files.extend(stability_file(family, plane)?);
+    Ok(files)
 }
 
 /// The columns of the table of several curves, for the rows of one of them.

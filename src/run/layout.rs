@@ -5,7 +5,7 @@ use std::path::Path;
 use super::archive::Entries;
 use super::journal::differences;
 use super::place::read_text;
-use super::{RunError, checksums, curve, journal, looks, plane_file, research_object};
+use super::{RunError, checksums, curve, journal, looks, plane_file, research_object, stability};
 
 /// What a kind of job leaves in its folder.
 #[derive(Debug, Clone, Copy)]
@@ -60,6 +60,7 @@ impl Layout {
             "curves.csv",
             "codimension_two.csv",
             "codimension_two.tex",
+            stability::NAME,
             "densities",
             "figures",
         ],
@@ -83,6 +84,7 @@ impl Layout {
             "curves.csv",
             "codimension_two.csv",
             "codimension_two.tex",
+            stability::NAME,
             "figures",
         ],
         about: &[],

@@ -92,6 +92,7 @@ mod sentences;
 mod settling;
 mod shards;
 mod spectra;
+mod stability;
 mod staged;
 mod staging;
 mod store;

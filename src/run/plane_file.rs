@@ -50,8 +50,7 @@ pub(super) fn of_curves(
     let row = json!({
         "label": origin.label,
         "value": origin.value,
-        "before": origin.before,
-        "after": origin.after,
+        "sides": origin.sides,
     });
     compose(plane, curves, sweep, ("row", row))
 }
@@ -140,7 +139,7 @@ pub enum StoredPlaneContent {
     /// A map of regimes.
     Map(Box<RegimeMap>),
     /// Curves that were begun at a row of a sweep.
-    Curves(Vec<Curve>, CurveOrigin),
+    Curves(Box<Plane>, Vec<Curve>, CurveOrigin),
 }
 
 /// The file of a map's folder, or of that of curves.
@@ -223,7 +222,7 @@ impl StoredPlane {
         if self.all["map"].is_null() {
             let origin = origin(&self.all["row"]);
             let origin = origin.ok_or_else(|| broken("its row cannot be understood"))?;
-            return Ok(StoredPlaneContent::Curves(curves, origin));
+            return Ok(StoredPlaneContent::Curves(Box::new(plane), curves, origin));
         }
         let map = map(&self.all["map"], problem, plane, curves);
         let map = map.ok_or_else(|| broken("its map cannot be understood"))?;

@@ -2,7 +2,7 @@
 
 use super::number::format_with_error;
 use crate::continuation::{Finding, PassageFault, ShiftedQuantity, SteadyClass};
-use crate::system::Family;
+use crate::system::{ExponentMethod, Family};
 
 /// Steady states that are named one by one.
 const CLASSES_NAMED: usize = 4;
@@ -238,7 +238,12 @@ fn solve_in_words(family: &Family, finding: &Finding) -> String {
             Some(point) => {
                 format!("no Lyapunov exponent: drift or noise has no derivative at {point}")
             }
-            None => "no Lyapunov exponent: cells and harmonics do not resolve the directions in which deviations point".to_owned(),
+            None => match family.questions.largest_exponent {
+                Some(ExponentMethod::Trajectories) => {
+                    "no Lyapunov exponent: trajectories run away".to_owned()
+                }
+                _ => "no Lyapunov exponent: cells and harmonics do not resolve the directions in which deviations point; `exponent.method = \"trajectories\"` needs neither".to_owned(),
+            },
         },
         Finding::Told(ref text) => text.clone(),
         // The others are worded above.

@@ -8,7 +8,7 @@ use crate::figure::FigureSettings;
 use crate::method::{
     DerivedMeasure, GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions,
 };
-use crate::system::{FieldKind, Interpretation, Model, NoiseKind, Sides};
+use crate::system::{ExponentMethod, FieldKind, Interpretation, Model, NoiseKind, Sides};
 use crate::topology::DetectOptions;
 
 /// The chosen method, and the settings of all, so that a file can hold them all and one word switches.
@@ -267,6 +267,10 @@ pub(super) struct Draft {
     pub(super) passages: Vec<PassageDraft>,
     /// Of what the largest Lyapunov exponent is wanted.
     pub(super) exponent: Option<ExponentKind>,
+    /// How that along the density is worked out.
+    pub(super) exponent_method: Option<ExponentMethod>,
+    /// Steps of all trajectories that it is worked out by.
+    pub(super) exponent_steps: Option<f64>,
     /// Axes and coordinates of the fixed point.
     pub(super) fixed_point: Vec<(String, f64)>,
     /// How many slow modes are wanted.
@@ -305,6 +309,8 @@ impl Default for Draft {
             levels: Vec::new(),
             passages: Vec::new(),
             exponent: None,
+            exponent_method: None,
+            exponent_steps: None,
             fixed_point: Vec::new(),
             slow_modes: None,
             spectrum: SpectrumDraft::default(),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::{
-    AtPhase, DampedParticle, Enclosed, FieldQuestion, FixedPointFault, Linearised, Model,
+    AtPhase, DampedParticle, Enclosed, ExponentMethod, FieldQuestion, FixedPointFault, Linearised, Model,
     NoiseKind, ParameterValues, Path, Quantity, Questions, System, SystemError, Tangent,
     TangentFault,
 };
@@ -112,6 +112,30 @@ impl Family {
         state: &[f64],
     ) -> Result<Linearised, FixedPointFault> {
         let values = self.values_at(coordinate);
+        self.linearised_of(values, state)
+    }
+
+    /// The same at values of some parameters, wherever the path goes.
+    ///
+    /// # Errors
+    /// [`FixedPointFault`].
+    pub(crate) fn linearised_with(
+        &self,
+        moved: &[(&str, f64)],
+        state: &[f64],
+    ) -> Result<Linearised, FixedPointFault> {
+        let mut moved = moved.iter();
+        let values = moved.try_fold(self.values.clone(), |values, (name, value)| {
+            self.model.with(&values, name, *value)
+        });
+        self.linearised_of(values, state)
+    }
+
+    fn linearised_of(
+        &self,
+        values: Result<ParameterValues, SystemError>,
+        state: &[f64],
+    ) -> Result<Linearised, FixedPointFault> {
         let values = values.map_err(|_| FixedPointFault::NotAllowed)?;
         let formulas = self.model.formulas().ok_or(FixedPointFault::NoFormulas)?;
         formulas.linearised(values.as_slice(), state)
@@ -126,14 +150,18 @@ impl Family {
 
     /// Why there is no largest Lyapunov exponent along the density at a coordinate of the path; `None` where there is
     /// one.
-    pub(crate) fn tangent_fault(&self, coordinate: f64) -> Option<TangentFault> {
+    pub(crate) fn tangent_fault(
+        &self,
+        coordinate: f64,
+        by: ExponentMethod,
+    ) -> Option<TangentFault> {
         let formulas = self.model.formulas();
         let Some(formulas) = formulas.filter(|_| self.model.noise_kind() == NoiseKind::White)
         else {
             return Some(TangentFault::NoFormulas);
         };
         let system = self.at(coordinate).ok()?;
-        formulas.tangent_fault(system.facts())
+        formulas.tangent_fault(system.facts(), by)
     }
 
     /// A system of the path at a coordinate with the angle of small deviations from its paths; `scales` are lengths
@@ -145,12 +173,12 @@ impl Family {
         &self,
         coordinate: f64,
         system: &Arc<dyn System>,
-        scales: &[f64],
+        (scales, by): (&[f64], ExponentMethod),
     ) -> Result<Tangent, TangentFault> {
         let values = self.values_at(coordinate);
         let values = values.map_err(|_| TangentFault::NoFormulas)?;
         let formulas = self.model.formulas().ok_or(TangentFault::NoFormulas)?;
-        formulas.tangent(system.clone(), values.as_slice(), scales)
+        formulas.tangent(system.clone(), values.as_slice(), (scales, by))
     }
 
     /// The same model, walls, quantities and questions with other values, along another path.

@@ -67,7 +67,7 @@ pub use passage::{FieldKind, FieldQuestion, MeasureLevel, PassageQuestion, Passa
 pub use path::Path;
 pub(crate) use quantity::AtPhase;
 pub use quantity::{BoundQuantity, Quantity, QuantityError, QuantityFault, quantities};
-pub use questions::Questions;
+pub use questions::{ExponentMethod, Questions};
 pub use region::{Basin, Region, RegionError, RegionFault, regions};
 pub use spectrum::{Band, Fluctuating, Sides, SpectrumQuestion};
 pub(crate) use symmetry::{proved_symmetry, symmetry_over_a_period};

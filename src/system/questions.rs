@@ -4,6 +4,17 @@ use std::sync::Arc;
 
 use super::{MeasureLevel, PassageQuestion, Quantity, Region, SpectrumQuestion};
 
+/// How the largest Lyapunov exponent along the stationary density is worked out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ExponentMethod {
+    /// From the density of state and direction, its angle by a Fourier series.
+    Modes,
+    /// By small deviations from free trajectories.
+    Trajectories,
+}
+
+words! { ExponentMethod, pub(crate) name: Modes: "modes", Trajectories: "trajectories" }
+
 /// What is asked of the systems of a [`Family`](super::Family) beside their densities. By default nothing is.
 #[derive(Debug, Clone, Default)]
 pub struct Questions {
@@ -18,8 +29,10 @@ pub struct Questions {
     /// A state of which the largest Lyapunov exponent is wanted: one that neither drift nor noise moves, a coordinate
     /// an axis.
     pub fixed_point: Option<Vec<f64>>,
-    /// Whether the largest Lyapunov exponent along the stationary density is wanted.
-    pub largest_exponent: bool,
+    /// How the largest Lyapunov exponent along the stationary density is worked out, where it is wanted.
+    pub largest_exponent: Option<ExponentMethod>,
+    /// Steps of all trajectories together that it is worked out by.
+    pub exponent_steps: f64,
     /// How many slow modes are wanted of which decay rates are given; 0 for none.
     pub slow_modes: usize,
     /// What is asked of fluctuations in the steady state.

@@ -28,9 +28,9 @@ pub(crate) const HALF_TURN: (f64, f64) = (-FRAC_PI_2, FRAC_PI_2);
 /// Why there is no equation of small deviations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum TangentFault {
-    /// Exponents along densities are worked out on one axis and on two.
+    /// Modes give exponents along densities on one axis and on two.
     #[error(
-        "the system has {axes} axes; exponents along a density are worked out of one axis and of two"
+        "the system has {axes} axes; modes give exponents along a density on one axis and on two"
     )]
     Axes {
         /// Axes of the system.
@@ -41,9 +41,15 @@ pub enum TangentFault {
         "drift or noise is not smooth everywhere, so that small deviations obey no linear equation where it is not"
     )]
     Rough,
-    /// A forcing, or an angle beside another axis.
-    #[error("exponents along a density are worked out of systems without angles and forcing")]
+    /// An angle beside another axis, which modes do not allow.
+    #[error("modes give exponents along a density of systems without angles beside other axes")]
     Turns,
+    /// A forcing.
+    #[error("exponents along a density are worked out of systems without forcing")]
+    Forced,
+    /// Walls that reflect, which trajectories do not allow.
+    #[error("trajectories give exponents of systems without reflecting walls")]
+    Walls,
     /// The equations are not known as formulas, or their noise is coloured.
     #[error("exponents along a density are worked out of formulas with white noise")]
     NoFormulas,
@@ -109,6 +115,53 @@ impl Slopes {
             _ => [along, sine, cosine],
         }
     }
+}
+
+/// Derivatives of drift and noises at a batch of states.
+pub(crate) struct StateSlopes<'a> {
+    slopes: &'a Slopes,
+    batch: Batch,
+}
+
+impl StateSlopes<'_> {
+    /// A v: the rate at which deviations change by the drift, one row an axis.
+    pub(crate) fn of_drift(&self, deviations: &[Lanes]) -> Vec<Lanes> {
+        let rows = self.batch.a.chunks_exact(self.slopes.axes);
+        rows.map(|row| product(row, deviations)).collect()
+    }
+
+    /// ∇b_k·v: by how much the amplitude of a noise differs beside its path.
+    pub(crate) fn of_noise(&self, number: usize, deviations: &[Lanes]) -> Lanes {
+        let axes = self.slopes.axes;
+        product(&self.batch.b[number * axes..][..axes], deviations)
+    }
+
+    /// The sum of the growth rates along all axes, [`Tangent::diagonal`].
+    pub(crate) fn divergence(&self) -> Lanes {
+        let axes = self.slopes.axes;
+        let mut sum = [0.0; LANES];
+        for own in self.batch.a.iter().step_by(axes + 1) {
+            sum.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+        }
+        for (number, axis) in self.slopes.noise_axes.iter().enumerate() {
+            let own = &self.batch.b[number * axes + axis];
+            sum.iter_mut()
+                .zip(own)
+                .for_each(|(sum, own)| *sum -= 0.5 * own * own);
+        }
+        sum
+    }
+}
+
+/// The scalar product of each lane.
+fn product(row: &[Lanes], column: &[Lanes]) -> Lanes {
+    let mut sum = [0.0; LANES];
+    for (one, other) in row.iter().zip(column) {
+        for lane in 0..LANES {
+            sum[lane] += one[lane] * other[lane];
+        }
+    }
+    sum
 }
 
 impl Tangent {
@@ -183,6 +236,14 @@ impl Tangent {
             drift: drift?,
             noises: noises?,
         })
+    }
+
+    /// The derivatives at a batch of states, whose last axis may be the angle.
+    pub(crate) fn slopes(&self, states: &[Lanes]) -> StateSlopes<'_> {
+        StateSlopes {
+            batch: self.slopes.run(states),
+            slopes: &self.slopes,
+        }
     }
 
     /// Whether deviations along one of two axes never leave it: both exponents are then those of the diagonal.

@@ -35,7 +35,7 @@ fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
     room.done(&fold("--second a --from 0.2 --to 1.6 --step 0.1"));
     assert!(room.holds("run/curves/PB1-a/previous/1/curves.csv"));
     for (more, words) in [
-        ("--row PB7 --second a --from 0 --to 2", "no P-bifurcation `PB7`"),
+        ("--row PB7 --second a --from 0 --to 2", "no P- or D-bifurcation `PB7`"),
         ("--second b --from 0 --to 2", "no parameter `b`"),
         ("--second h --from 0 --to 2", "the second parameter of the curve is the swept one"),
         ("--second a --from 1.2 --to 2", "the sweep holds `a` at 1, and the box of the curves goes from 1.2 to 2.0"),

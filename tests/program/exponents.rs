@@ -70,6 +70,164 @@ fn the_state_of_rest_of_an_oscillator_loses_its_stability_where_the_closed_form_
 }
 
 #[test]
+#[rustfmt::skip]
+fn the_d_bifurcation_of_rest_is_followed_in_two_parameters_and_the_crater_beside_it() {
+    let room = Room::new();
+    room.write("a.toml", OSCILLATOR);
+    room.run("sweep a.toml --out run");
+    let printed = room.done("curve run --row DB1 --second s --from 0.2 --to 1.0 --first-from -0.3");
+    printed.says(&["D1  the largest exponent of the fixed point is zero", "P1  the density turns"]);
+    let table = room.table("run/curves/DB1-s/stability.csv");
+    let of = |name: &'static str| table.0.iter().filter(move |row| &row["curve"] == name);
+    // The density beside rest goes like the power γ - 2, and γ passes 2 where b = 0, whatever the noise is.
+    assert!(of("P1").count() > 50);
+    for row in of("P1") {
+        let [b, error] = row.numbers(["b", "error"]);
+        assert!(b.abs() <= 0.4 * error && error < 1e-13, "{row:?}");
+    }
+    // Sweeps at other noise find the zeros that the curve passes: closed form with Airy functions.
+    for (s, exact) in [(0.2, -0.009_996_510_0), (0.5, -0.061_722_831_0), (1.0, -0.222_527_174_3)] {
+        let near = of("D1").map(|row| row.numbers(["b", "s"]));
+        let mut near: Vec<[f64; 2]> = near.collect();
+        near.sort_by(|one, other| (one[1] - s).abs().total_cmp(&(other[1] - s).abs()));
+        let [a, b, c] = [near[0], near[1], near[2]];
+        // The parabola through three points a step of 0.01 apart.
+        let part = |[x, y]: [f64; 2], one: [f64; 2], other: [f64; 2]| {
+            x * (s - one[1]) * (s - other[1]) / ((y - one[1]) * (y - other[1]))
+        };
+        let there = part(a, b, c) + part(b, a, c) + part(c, a, b);
+        assert!((there - exact).abs() < 1e-6, "{there} {exact}");
+    }
+    let ends = of("D1").map(|row| row.numbers(["b", "s"]));
+    let ends: Vec<[f64; 2]> = ends.collect();
+    let ends = [ends[0], ends[ends.len() - 1]];
+    for (s, exact) in [(0.2, -0.009_996_510_0), (1.0, -0.222_527_174_3)] {
+        let end = ends.iter().find(|end| end[1] == s).unwrap();
+        assert!((end[0] - exact).abs() < 6e-11, "{end:?}");
+    }
+    room.holds_all("run/curves/DB1-s", "curve.json plane.json figures/curve.svg");
+    room.done("verify run");
+    // Drawn again from what is stored; a row that is none is refused with those that are.
+    let picture = room.read("run/curves/DB1-s/figures/curve.svg");
+    room.done("plot run/curves/DB1-s");
+    assert_eq!(room.read("run/curves/DB1-s/figures/curve.svg"), picture);
+    let box_of_s = "--second s --from 0.2 --to 1.0";
+    room.refused(&format!("curve run --row DB2 {box_of_s}"), &["no P- or D-bifurcation `DB2`", "`DB1`"]);
+}
+
+#[test]
+fn a_map_shows_where_all_mass_ends_in_a_fixed_point_and_its_border() {
+    let room = Room::new();
+    let map = "[map]\nparameter = \"s\"\nfrom = 0.3\nto = 0.9\npoints = 3\ndepth = 1\n";
+    let cells = OSCILLATOR.replace("count = 40", "count = 24");
+    room.write(
+        "a.toml",
+        cells.replace("[locate]", &format!("{map}[locate]")),
+    );
+    let printed = room.run("sweep a.toml --out map sweep.points=3");
+    assert_says(
+        &printed.text(),
+        &[
+            "D1  the largest exponent",
+            "all mass ends in the fixed point",
+        ],
+    );
+    // On the side of smaller damping there are densities, on the other side none.
+    let zero = room.table("map/stability.csv");
+    let line: Vec<[f64; 2]> = zero
+        .0
+        .iter()
+        .filter(|row| &row["curve"] == "D1")
+        .map(|row| row.numbers(["b", "s"]))
+        .collect();
+    for row in &room.table("map/map.csv").0 {
+        let [b, s] = row.numbers(["b", "s"]);
+        let by_height = |one: &&[f64; 2], other: &&[f64; 2]| {
+            (one[1] - s).abs().total_cmp(&(other[1] - s).abs())
+        };
+        let beside = line.iter().min_by(by_height).unwrap();
+        if (beside[1] - s).abs() < 0.01 {
+            assert_eq!(
+                &row["status"] == "no-steady-state",
+                b < beside[0],
+                "{row:?}"
+            );
+        }
+    }
+    room.holds_all("map", "figures/map_xy.svg stability.csv");
+}
+
+/// Neighbouring paths in a double well with little damping run apart, and come together where it is larger.
+const CHAOS: &str = r#"[system.equations]
+x = "y"
+y = "x - x^3 - g y"
+[system.noise]
+y = "sqrt(g)"
+[system.parameters]
+[sweep]
+parameter = "g"
+from = 0.3
+to = 0.8
+points = 5
+[cells]
+x = { from = -2.7, to = 2.7, count = 40 }
+y = { from = -3.6, to = 3.6, count = 40 }
+[exponent]
+kind = "largest"
+method = "trajectories"
+steps = 3e6
+[locate]
+relative_tolerance = 0.1
+grid_check = "off"
+effort = 0
+[figures]
+draw = []
+"#;
+
+#[test]
+fn trajectories_tell_exponents_where_modes_do_not() {
+    let room = Room::new();
+    room.write("a.toml", CHAOS);
+    assert_says(
+        &room.done("check a.toml").out,
+        &["steps of trajectories", "method = \"trajectories\""],
+    );
+    room.run("sweep a.toml --out run");
+    // 2000 pairs of paths by another program: exponent and one standard error (docs/exponents.md).
+    let points = room.table("run/points.csv");
+    for (g, known, of_known) in [(0.3, 0.0716, 1.1e-3), (0.8, -0.1149, 1.3e-3)] {
+        let row = points.0.iter().find(|row| row.number("g") == g).unwrap();
+        let [value, error] = row.numbers(["exponent", "exponent_error"]);
+        let off = (value - known).abs();
+        assert!(
+            off <= error + 3.0 * of_known && error < 0.03,
+            "{value} ± {error}"
+        );
+        // The sum of both exponents is minus the damping, at every state.
+        let [divergence, error] = row.numbers(["divergence", "divergence_error"]);
+        assert!((divergence + g).abs() <= error + 1e-12 && error < 1e-9);
+    }
+    let table = room.table("run/bifurcations.csv");
+    let row = table.0.iter().find(|row| &row["label"] == "DB1").unwrap();
+    // By a straight line through paths at 0.45 and 0.55: 0.503 ± 0.002.
+    let [value, error] = row.numbers(["value", "error"]);
+    assert!(
+        (value - 0.503).abs() <= error + 0.006 && error < 0.1,
+        "{value} ± {error}"
+    );
+    let tolerance = 0.1 * 0.5;
+    assert_eq!(&row["status"] == "located", error <= tolerance, "{row:?}");
+    // Another number of threads, the same numbers.
+    room.run("sweep a.toml --out again --threads 1");
+    assert_eq!(
+        room.read("again/bifurcations.csv"),
+        room.read("run/bifurcations.csv")
+    );
+    let printed = room.run("curve run --row DB1 --second g --from 0.3 --to 0.8");
+    assert!(!printed.text().contains("panicked"));
+}
+
+#[test]
 fn on_one_axis_the_exponent_is_exact_in_either_reading() {
     let file = r#"[system.equations]
 x = "a x - x^2"
@@ -110,6 +268,8 @@ fn what_has_no_exponent_is_refused_with_its_place_and_a_remedy() {
         ("exponent.at.x=1", "x = 1, y = 0 is no fixed point at b = -0.1: along y the drift is -2"),
         ("exponent.at.z=0", "`z` is no coordinate of the state"),
         ("exponent.kind=all", "cannot be `all`"),
+        ("exponent.method=trajectories", "`exponent.method` says nothing of this exponent"),
+        ("exponent.steps=1e6", "`exponent.steps` says nothing of this exponent"),
         ("system.noise.y=0.1", "the amplitude of the noise 0.1"),
         ("system.equations.y=-x+b*y-sign(y)", "has no derivative at x = 0, y = 0"),
         ("system.noise.kind=ornstein-uhlenbeck system.parameters.tau=1", "white noise alone"),
@@ -222,8 +382,10 @@ fn what_has_no_exponent_along_its_density_is_refused_with_a_remedy() {
         ("system.equations.y=-x+b*y-x^3-sign(y)", "is not smooth everywhere"),
         ("exponent.at.x=0", "names a fixed point"),
         ("method.kind=monte-carlo", "by the generator alone"),
+        ("exponent.method=trajectories system.equations.y=-x+b*y-sign(y)", "is not smooth everywhere"),
+        ("exponent.method=trajectories system.bounds.x=reflecting", "without reflecting walls"),
         ("system.noise.kind=ornstein-uhlenbeck system.parameters.tau=1", "formulas with white noise"),
-        ("system.equations.y=-x-y+cos(b*t)", "without angles and forcing"),
+        ("system.equations.y=-x-y+cos(b*t)", "without forcing"),
     ] {
         room.refused(&format!("sweep a.toml {set}"), &[words, "a.toml:"]);
     }

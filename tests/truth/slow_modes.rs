@@ -217,6 +217,72 @@ fn errors_hold_on_random_linear_systems() {
     assert!(10 * all > 8 * asked);
 }
 
+/// A random oscillator with one well or two and a box about it: drift of the velocity, amplitude of its noise, ends.
+fn random_oscillator(numbers: &mut Numbers) -> (String, f64, [f64; 2]) {
+    let mut between =
+        |from: f64, to: f64| from + (to - from) * numbers.below(1_000_000) as f64 * 1e-6;
+    let (stiffness, cubic) = (between(-1.0, 1.5), between(0.3, 1.0));
+    let (damping, more, heat) = (between(0.1, 1.5), between(0.0, 0.6), between(0.15, 0.6));
+    // Where the potential is sixteen times the heat above its lowest.
+    let lowest = -stiffness.min(0.0).powi(2) / (4.0 * cubic);
+    let root = (stiffness.powi(2) + 4.0 * cubic * (16.0 * heat + lowest)).sqrt();
+    let far = ((root - stiffness) / cubic).sqrt();
+    (
+        format!("-({stiffness}) x - {cubic} x^3 - {damping} y - {more} x^2 y"),
+        (2.0 * damping * heat).sqrt(),
+        [far, (32.0 * heat).sqrt()],
+    )
+}
+
+/// Modes on some cells an axis have those on more within both errors.
+fn assert_oscillators_hold_on_finer_cells((count, seed): (u64, u64), cells: [usize; 2]) {
+    let mut numbers = Numbers(seed);
+    let (mut worst, mut all) = (0.0f64, 0);
+    for _ in 0..count {
+        let (drift, amplitude, ends) = random_oscillator(&mut numbers);
+        let model = model(
+            &[("x", "y"), ("y", &drift)],
+            &[("y", &amplitude.to_string())],
+        );
+        let of = |cells: usize| modes(&model, &ends.map(|end| (-end, end, cells)), 4).modes;
+        let [coarse, fine] = cells.map(of);
+        assert!(!coarse.is_empty(), "{drift}");
+        for mode in &coarse {
+            let gap = |other: &pbif::spectrum::SlowMode| {
+                let of = |one: (f64, f64), two: (f64, f64)| {
+                    (one.0 - two.0).abs() / (one.1 + two.1 + 1e-12)
+                };
+                of(mode.decay, other.decay).max(of(mode.frequency, other.frequency))
+            };
+            let nearest = fine.iter().map(gap).fold(f64::INFINITY, f64::min);
+            // The slowest that are told on few cells may be more than are asked for on many.
+            let is_last = fine
+                .last()
+                .is_none_or(|last| mode.decay.0 + mode.decay.1 >= last.decay.0);
+            assert!(
+                nearest <= 1.0 || is_last,
+                "{drift}, {amplitude}: {mode:?} among {fine:?}"
+            );
+            if nearest <= 1.0 {
+                (worst, all) = (worst.max(nearest), all + 1);
+            }
+        }
+    }
+    println!("{all} modes of {count} oscillators, off by at most {worst:.2} of both errors");
+    assert!(all as u64 >= 2 * count);
+}
+
+#[test]
+fn errors_hold_on_random_oscillators() {
+    assert_oscillators_hold_on_finer_cells((1, 11), [48, 72]);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn errors_hold_on_thirty_random_oscillators_at_length() {
+    assert_oscillators_hold_on_finer_cells((30, 5), [60, 110]);
+}
+
 /// The rates between two regions, there and back, of a system that asks for them in its file.
 fn between(text: &str) -> [(f64, f64); 2] {
     measured(text, ["go_switching_rate", "go_return_rate"])

@@ -2,7 +2,7 @@
 
 use crate::continuation::BifurcationStatus;
 use crate::continuation::curve::{
-    CodimensionTwo, CodimensionTwoKind, Curve, CurveTree, Plane, codimension_two,
+    CodimensionTwo, CodimensionTwoKind, Curve, CurveTree, Plane, codimension_two, stability_curves,
 };
 use crate::job::{CurveJob, Job as _};
 use crate::run::{doubt_in_words, format_with_error};
@@ -14,6 +14,7 @@ pub(super) fn summary(job: &CurveJob<'_>, tree: &CurveTree) -> String {
     for (index, curve) in tree.curves.iter().enumerate() {
         text += &of_curve(job, tree, (index, curve));
     }
+    text += &stability_lines(job.sweep().problem.family(), plane);
     for point in codimension_two(&tree.curves) {
         text += &codimension_line(&point, plane, job.sweep().problem.family());
     }
@@ -26,6 +27,24 @@ pub(super) fn summary(job: &CurveJob<'_>, tree: &CurveTree) -> String {
         );
     }
     text
+}
+
+/// The curves of a fixed point in a plane, a line each, with both of its ends.
+pub(in crate::cli) fn stability_lines(family: &Family, plane: &Plane) -> String {
+    let curves = stability_curves(family, plane);
+    let lines = curves.iter().map(|curve| {
+        let ends = [curve.points.first(), curve.points.last()].into_iter();
+        let ends = ends.flatten().map(|end| place(plane, end.values, 1e-4));
+        format!(
+            "{}  {}: from {}; {} points, known to {:.0e} of the sides of the box\n",
+            curve.name,
+            curve.kind.words(),
+            ends.collect::<Vec<_>>().join("  to "),
+            curve.points.len(),
+            curve.largest_error()
+        )
+    });
+    lines.collect()
 }
 
 /// A curve with its ends.
@@ -44,7 +63,7 @@ fn of_curve(job: &CurveJob<'_>, tree: &CurveTree, (index, curve): (usize, &Curve
     let mut text = match index {
         0 => format!(
             "{number}{what}, followed from {} in the plane of {} and {}\n",
-            job.row().label,
+            job.row().label(),
             first.parameter,
             second.parameter
         ),
@@ -61,7 +80,7 @@ fn of_curve(job: &CurveJob<'_>, tree: &CurveTree, (index, curve): (usize, &Curve
         line(&end.label, end.point, &end.reason.words(&curve.plane));
     }
     if index == 0 {
-        line(&job.row().label, curve.start, "start");
+        line(job.row().label(), curve.start, "start");
     }
     for split in &curve.degenerate {
         line(&split.label, split.point, turn_in_words(split.kind));

@@ -38,20 +38,15 @@ pub(super) fn run(
     let (title, style) = (&settings.title, &settings.figures.style);
     let content = stored.content(&spec.problem)?;
     let (plane, curves) = match &content {
-        StoredPlaneContent::Map(map) => (Some(&map.plane), map.curves.as_slice()),
-        StoredPlaneContent::Curves(curves, _) => {
-            (curves.first().map(|curve| &curve.plane), curves.as_slice())
-        }
+        StoredPlaneContent::Map(map) => (&map.plane, map.curves.as_slice()),
+        StoredPlaneContent::Curves(plane, curves, _) => (&**plane, curves.as_slice()),
     };
-    let crossed = match plane {
-        Some(plane) => crossed(&arguments.with, plane, family)?,
-        None => Vec::new(),
-    };
+    let crossed = crossed(&arguments.with, plane, family)?;
     let sweeps: Vec<SweepInPlane> = crossed.iter().map(|one| one.sweep.clone()).collect();
     let figures = match &content {
         StoredPlaneContent::Map(map) => Figures::of_map(map, &sweeps, title),
-        StoredPlaneContent::Curves(curves, origin) => {
-            Figures::of_curves(curves, (origin, &sweeps), family, title)
+        StoredPlaneContent::Curves(plane, curves, origin) => {
+            Figures::of_curves((plane, curves), (origin, &sweeps), family, title)
         }
     };
     let figures = figures.with_style(style);
@@ -109,10 +104,7 @@ fn crossed(
 
 impl Crossed {
     /// What it located, and how far that is from the curves.
-    fn summary(&self, plane: Option<&Plane>, curves: &[Curve]) -> String {
-        let Some(plane) = plane else {
-            return String::new();
-        };
+    fn summary(&self, plane: &Plane, curves: &[Curve]) -> String {
         let mut text = format!("{}\n", self.folder.display());
         if self.sweep.rows.is_empty() {
             text += "  no P-bifurcation in the box\n";

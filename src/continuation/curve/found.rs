@@ -3,7 +3,9 @@
 use super::{CurveStart, Plane};
 use crate::continuation::doubt::status_of;
 use crate::continuation::measure::FACTORISATIONS;
-use crate::continuation::{BifurcationStatus, Doubt, ErrorParts, Located, SolveReport};
+use crate::continuation::{
+    BifurcationStatus, Doubt, ErrorParts, LevelCrossing, Located, SolveReport,
+};
 use crate::density::Observable;
 use crate::topology::{IndicatorKind, Signature};
 
@@ -181,10 +183,8 @@ pub struct CurveOrigin {
     pub label: String,
     /// Value of the swept parameter.
     pub value: f64,
-    /// Signature below it.
-    pub before: Signature,
-    /// Signature above it.
-    pub after: Signature,
+    /// Signatures below and above it; `None` for a D-bifurcation.
+    pub sides: Option<[Signature; 2]>,
 }
 
 impl From<&Located> for CurveOrigin {
@@ -192,8 +192,17 @@ impl From<&Located> for CurveOrigin {
         Self {
             label: row.label.clone(),
             value: row.value,
-            before: row.before,
-            after: row.after,
+            sides: Some([row.before, row.after]),
+        }
+    }
+}
+
+impl From<&LevelCrossing> for CurveOrigin {
+    fn from(row: &LevelCrossing) -> Self {
+        Self {
+            label: row.label.clone(),
+            value: row.value,
+            sides: None,
         }
     }
 }

@@ -30,6 +30,7 @@ mod piece;
 mod plane;
 mod polynomial;
 mod reading;
+mod stability;
 mod tail;
 mod tree;
 mod walk;
@@ -43,6 +44,7 @@ pub use found::{
     EndReason,
 };
 pub use plane::{Plane, PlaneSide};
+pub use stability::{StabilityCurve, StabilityKind, StabilityPoint, stability_curves};
 pub use tree::{CurveTree, MissedBranch, follow_all};
 pub(super) use tree::{ON_IT, distance};
 

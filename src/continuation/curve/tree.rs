@@ -25,9 +25,9 @@ pub struct MissedBranch {
 }
 
 /// Curves that hang together.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct CurveTree {
-    /// The curves, first the one that was asked for; each once.
+    /// The curves, first the one that was asked for; each once. None where a D-bifurcation was.
     pub curves: Vec<Curve>,
     /// Those that were not met.
     pub missed: Vec<MissedBranch>,

@@ -12,7 +12,7 @@ use super::lattice::{At, Lattice, Leaf};
 use super::node::{SolvedNode, SolvedNodes};
 use super::{MapMaker, MapProgress};
 use crate::continuation::curve::CurveWork;
-use crate::continuation::{Point, Session, SourceError};
+use crate::continuation::{Finding, Point, Session, SourceError};
 
 /// Coarse rows of a strip: its first node is solved without a neighbour, and all strips can be solved side by side.
 const ROWS: usize = 2;
@@ -215,13 +215,16 @@ impl<'a> Solver<'a> {
         let mut work = self.work.lock().unwrap_or_else(PoisonError::into_inner);
         work.count(&point.report);
         drop(work);
+        let mut findings = point.report.findings.iter();
+        let is_at_rest = findings.any(|one| matches!(one, Finding::PointMass { .. }));
+        let at_rest = is_at_rest.then(|| "all mass ends in the fixed point".to_owned());
         let node = MapNode {
             values: self.maker.plane.values(self.lattice.share(at)),
             level: self.lattice.level(at),
             status: point.report.status,
             signatures: detections.iter().map(|one| one.signature).collect(),
             is_seen: detections.iter().all(|one| one.is_seen),
-            reason: refusal.map(|error| error.to_string()),
+            reason: refusal.map(|error| error.to_string()).or(at_rest),
         };
         Some(SolvedNode {
             point: Some(point),

@@ -6,17 +6,20 @@ use plotters_backend::text_anchor::HPos;
 use super::Sketch;
 use crate::continuation::BifurcationStatus;
 use crate::continuation::curve::{
-    Curve, CurveOrigin, CurvePoint, EndReason, SweepInPlane, codimension_two,
+    Curve, CurveOrigin, CurvePoint, EndReason, Plane, SweepInPlane, codimension_two,
 };
 use crate::density::Observable;
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::legend::{Legend, Swatch};
 use crate::figure::canvas::page::{Heading, Lettering, Page, Panel, Rectangle, Shape, small};
-use crate::figure::canvas::style::{BIFURCATION, Colour, GREY, INK, MARGIN, PAPER, Stroke};
+use crate::figure::canvas::style::{
+    BIFURCATION, Colour, D_BIFURCATION, GREY, INK, MARGIN, PAPER, Stroke,
+};
 use crate::figure::canvas::symbols;
 use crate::figure::parts::crossed::Crossed;
 use crate::figure::parts::names;
 use crate::figure::parts::names::symbol_of;
+use crate::figure::parts::stability::Stability;
 use crate::figure::print::{Figure, Print};
 use crate::system::Family;
 use crate::topology::IndicatorKind;
@@ -39,24 +42,26 @@ const AWAY: f64 = 9.0;
 
 /// The figure of curves in one plane; none without a curve.
 pub(in crate::figure) fn sketches<'a>(
-    curves: &'a [Curve],
+    (plane, curves): (&'a Plane, &'a [Curve]),
     (row, sweeps): (&'a CurveOrigin, &'a [SweepInPlane]),
     family: &'a Family,
 ) -> Vec<Sketch<'a>> {
-    let Some(curve) = curves.first() else {
+    let stability = Stability::new(family, plane, true);
+    if curves.is_empty() && stability.is_empty() {
         return Vec::new();
-    };
+    }
     let draw = move |print: &Print<'_>| {
         let watched: Vec<Observable> = curves.iter().map(|curve| curve.observable).collect();
         let crossed = Crossed {
-            plane: &curve.plane,
+            plane,
             family,
             sweeps,
             observables: &watched,
         };
         let scene = Scene {
-            curve,
+            plane,
             curves,
+            stability: &stability,
             row,
             crossed,
             family,
@@ -68,10 +73,10 @@ pub(in crate::figure) fn sketches<'a>(
 }
 
 struct Scene<'a> {
-    /// The first curve.
-    curve: &'a Curve,
-    /// All of them.
+    plane: &'a Plane,
+    /// The first is the one that was begun at the row, unless that is a D-bifurcation.
     curves: &'a [Curve],
+    stability: &'a Stability,
     row: &'a CurveOrigin,
     crossed: Crossed<'a>,
     family: &'a Family,
@@ -80,12 +85,12 @@ struct Scene<'a> {
 impl Scene<'_> {
     /// Symbol of a side's parameter.
     fn symbol(&self, side: usize) -> String {
-        symbol_of(self.family, &self.curve.plane.sides()[side].parameter)
+        symbol_of(self.family, &self.plane.sides()[side].parameter)
     }
 
     fn draw(&self, print: &Print<'_>) -> Page {
         let look = &print.look;
-        let [x, y] = self.curve.plane.sides();
+        let [x, y] = self.plane.sides();
         let (x, y) = ((x.from, x.to), (y.from, y.to));
         let high = look.height(PANEL.1, USUAL);
         let up = Scale::vertical(look, y, high, &self.symbol(1));
@@ -98,6 +103,7 @@ impl Scene<'_> {
         let rect = Rectangle::new((left, top), (wide, high));
         let below = rect.bottom() + Scale::below();
         let mut entries = entries(self.curves, self.family, rect);
+        entries.extend(self.stability.entries());
         entries.extend(self.crossed.entries());
         let legend = Legend::new(look, entries, width - 2.0 * MARGIN);
         let page = Page::new(look, width, below + legend.height() + MARGIN);
@@ -106,6 +112,7 @@ impl Scene<'_> {
         for curve in self.curves {
             draw_line(&panel, curve, stroke_of(self.curves, curve.kind));
         }
+        self.stability.draw(&panel);
         self.crossed.draw(&panel);
         frame::border(&page, rect);
         across.draw_below(&page, rect, true);
@@ -117,7 +124,7 @@ impl Scene<'_> {
 
     /// The start with its label and the signatures on both sides, and the ends with theirs.
     fn draw_marks(&self, page: &Page, panel: &Panel, rect: Rectangle) {
-        let place = |point: &CurvePoint| into_box(self.curve, point.values[0], point.values[1]);
+        let place = |point: &CurvePoint| into_box(self.plane, point.values[0], point.values[1]);
         let rim = || Stroke::solid(INK, 1.2);
         for (number, curve) in self.curves.iter().enumerate() {
             let told = |reason: &EndReason| {
@@ -142,19 +149,28 @@ impl Scene<'_> {
         }
         for point in codimension_two(self.curves) {
             let [x, y] = point.values;
-            let at = into_box(self.curve, x, y);
+            let at = into_box(self.plane, x, y);
             panel.draw(&[at], Shape::Dot(DOT, PAPER, rim()));
             let at = panel.place(at);
             write(page, rect, at, &point.label, INK, true);
         }
-        let Some(start) = self.curve.points.get(self.curve.start) else {
+        let Some(first) = self.curves.first() else {
+            if let Some(start) = self.stability.zero_at(self.row.value) {
+                let rim = Stroke::solid(D_BIFURCATION, 1.2);
+                panel.draw(&[start], Shape::Dot(DOT, D_BIFURCATION, rim));
+                let at = panel.place(start);
+                write(page, rect, at, &self.row.label, D_BIFURCATION, true);
+            }
+            return;
+        };
+        let Some(start) = first.points.get(first.start) else {
             return;
         };
         let rim = Stroke::solid(BIFURCATION, 1.2);
         panel.draw(&[place(start)], Shape::Dot(DOT, BIFURCATION, rim));
         let at = panel.place(place(start));
         write(page, rect, at, &self.row.label, BIFURCATION, true);
-        for (signature, side) in [(self.row.before, -1.0), (self.row.after, 1.0)] {
+        for (signature, side) in self.row.sides.into_iter().flatten().zip([-1.0, 1.0]) {
             let anchor = if side < 0.0 { HPos::Right } else { HPos::Left };
             let text = small(symbols::plain(&signature.to_string()), anchor, GREY);
             page.text((at.0 + side * 2.5 * AWAY, at.1 + AWAY), text);
@@ -162,13 +178,27 @@ impl Scene<'_> {
     }
 
     fn caption(&self) -> String {
-        let curve = self.curve;
-        let [first, second] = curve.plane.sides();
-        let largest = curve
-            .points
-            .iter()
-            .map(|point| point.error)
-            .fold(0.0, f64::max);
+        let mut text = self.first_in_words();
+        text += &self.stability.caption();
+        text += &self.crossed.caption();
+        text + "\n"
+    }
+
+    /// What the caption says of the first curve and of points of codimension two.
+    fn first_in_words(&self) -> String {
+        let [first, second] = self.plane.sides();
+        let Some(curve) = self.curves.first() else {
+            return format!(
+                "The fixed point in the plane of {} and {}, begun at {} at {} = {}.",
+                first.parameter,
+                second.parameter,
+                self.row.label,
+                first.parameter,
+                symbols::rounded(self.row.value),
+            );
+        };
+        let errors = curve.points.iter().map(|point| point.error);
+        let largest = errors.fold(0.0, f64::max);
         let mut text = format!(
             "Where the {} of the density of {} is zero, in the plane of {} and {}, followed from {} at {} = {}.",
             curve.kind.name(),
@@ -192,15 +222,14 @@ impl Scene<'_> {
                 second.parameter
             );
         }
-        text += &self.crossed.caption();
         text += &format!(
-            " The error across the curve is at most {largest:.1e} of the sides of the box.\n"
+            " The error across the curve is at most {largest:.1e} of the sides of the box."
         );
         text
     }
 
     fn data(&self) -> String {
-        let [first, second] = self.curve.plane.sides();
+        let [first, second] = self.plane.sides();
         let mut text = format!(
             "curve,{},{},edge_{},edge_{},status\n",
             first.parameter, second.parameter, first.parameter, second.parameter
@@ -211,6 +240,9 @@ impl Scene<'_> {
                 let status = point.status().word();
                 text += &format!("C{},{x},{y},{dx},{dy},{status}\n", number + 1);
             }
+        }
+        for (curve, [x, y]) in self.stability.data() {
+            text += &format!("{},{x},{y},0,0,{}\n", curve.name, curve.kind.name());
         }
         for (row, [dx, dy], status) in self.crossed.data() {
             let ([x, y], label) = (row.values, &row.label);
@@ -277,7 +309,7 @@ pub(super) fn draw_line(panel: &Panel, curve: &Curve, stroke: Stroke) {
         let points = curve.points.iter();
         points.map(move |point| {
             let [x, y] = [0, 1].map(|k| point.values[k] + sign * point.to_edge[k]);
-            into_box(curve, x, y)
+            into_box(&curve.plane, x, y)
         })
     };
     let mut outline: Vec<(f64, f64)> = edge(1.0).collect();
@@ -299,7 +331,7 @@ fn pieces(curve: &Curve) -> Vec<(Vec<(f64, f64)>, bool)> {
     for pair in curve.points.windows(2) {
         let mut both = pair.iter();
         let located = both.all(|point| point.status() == BifurcationStatus::Located);
-        let [a, b] = [0, 1].map(|k| into_box(curve, pair[k].values[0], pair[k].values[1]));
+        let [a, b] = [0, 1].map(|k| into_box(&curve.plane, pair[k].values[0], pair[k].values[1]));
         match pieces.last_mut().filter(|piece| piece.1 == located) {
             Some((places, _)) => places.push(b),
             None => pieces.push((vec![a, b], located)),
@@ -309,8 +341,8 @@ fn pieces(curve: &Curve) -> Vec<(Vec<(f64, f64)>, bool)> {
 }
 
 /// A place moved into the box.
-fn into_box(curve: &Curve, x: f64, y: f64) -> (f64, f64) {
-    let [first, second] = curve.plane.sides();
+fn into_box(plane: &Plane, x: f64, y: f64) -> (f64, f64) {
+    let [first, second] = plane.sides();
     (
         x.clamp(first.from, first.to),
         y.clamp(second.from, second.to),

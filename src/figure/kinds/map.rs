@@ -20,6 +20,7 @@ use crate::figure::parts::crossed::Crossed;
 use crate::figure::parts::inset;
 use crate::figure::parts::names::{self, symbol_of};
 use crate::figure::parts::region_room::Room;
+use crate::figure::parts::stability::Stability;
 use crate::figure::print::{Figure, Print};
 use crate::system::Family;
 use crate::topology::Signature;
@@ -60,6 +61,11 @@ pub(in crate::figure) fn sketches<'a>(
                     sweeps,
                     observables: std::slice::from_ref(observable),
                 },
+                stability: Stability::new(
+                    family,
+                    &map.plane,
+                    observable.axes().len() == family.model().axes.len(),
+                ),
                 family,
                 look: &print.look,
             };
@@ -77,6 +83,7 @@ struct Scene<'a> {
     index: usize,
     curves: Vec<&'a Curve>,
     crossed: Crossed<'a>,
+    stability: Stability,
     family: &'a Family,
     look: &'a Look,
 }
@@ -131,6 +138,7 @@ impl Scene<'_> {
             let stroke = stroke_of(self.curves.iter().copied(), curve.kind);
             draw_line(&panel, curve, stroke);
         }
+        self.stability.draw(&panel);
         self.crossed.draw(&panel);
         self.draw_ends(&page, &panel);
         frame::border(&page, rect);
@@ -223,6 +231,7 @@ impl Scene<'_> {
         rect: Rectangle,
     ) -> Legend {
         let mut entries = entries(self.curves.iter().copied(), self.family, rect);
+        entries.extend(self.stability.entries());
         entries.extend(self.crossed.entries());
         if let Some(ground) = ground {
             for (kind, signature) in ground.kinds.iter().enumerate() {
@@ -277,6 +286,7 @@ impl Scene<'_> {
                 ends.join("; "),
             );
         }
+        text += &self.stability.caption();
         text += &self.crossed.caption();
         if self.map.interrupted {
             text += " The map was interrupted before it was complete.";
@@ -293,6 +303,9 @@ impl Scene<'_> {
                 let [x, y] = point.values;
                 text += &format!("curve {},{x},{y},{}\n", number + 1, curve.kind.name());
             }
+        }
+        for (curve, [x, y]) in self.stability.data() {
+            text += &format!("curve {},{x},{y},{}\n", curve.name, curve.kind.name());
         }
         for node in &self.map.nodes {
             let [x, y] = node.values;

@@ -12,5 +12,6 @@ pub(super) mod meeting;
 pub(super) mod names;
 pub(super) mod pages;
 pub(super) mod region_room;
+pub(super) mod stability;
 pub(super) mod table;
 pub(super) mod view;

@@ -1,7 +1,8 @@
 //! Which rows curves start from, and what is said where one cannot be followed.
 
+use super::row::FirstRow;
 use crate::continuation::curve::{CurveError, Plane};
-use crate::continuation::{BifurcationStatus, Located, SweepResult};
+use crate::continuation::{BifurcationStatus, SweepResult};
 use crate::sweep_file::{Diagnostic, Report, Sweep, list};
 
 /// Share of an axis by which a bound may be beyond it: rounding.
@@ -28,8 +29,8 @@ pub(crate) fn check_curves(sweep: &Sweep) -> Result<(), Report> {
     plane(sweep)?.map_or(Ok(()), |plane| check_corners(sweep, &plane))
 }
 
-/// The rows of a result that are followed: those that `curve.rows` names, or all that an indicator has located and that
-/// are in the box. With `only`, the one that can be followed, where none is named.
+/// The rows of a result that are followed: those that `curve.rows` names, or all that an indicator has located, or the
+/// exponent of a fixed point, and that are in the box. With `only`, the one that can be followed, where none is named.
 ///
 /// # Errors
 /// A report where one is not there, or which one is not clear.
@@ -37,14 +38,14 @@ pub fn curve_rows<'r>(
     sweep: &Sweep,
     result: &'r SweepResult,
     only: bool,
-) -> Result<Vec<&'r Located>, Report> {
+) -> Result<Vec<FirstRow<'r>>, Report> {
     let Some(curve) = &sweep.settings.curve else {
         return Err(which_parameter(sweep));
     };
     if let Some(labels) = &curve.rows {
         return labels.iter().map(|label| by_label(label, result)).collect();
     }
-    let mut rows = result.bifurcations().filter(|row| row.zero.is_some());
+    let mut rows = followable(result);
     if only {
         return match (rows.next(), rows.next()) {
             (Some(row), None) => Ok(vec![row]),
@@ -57,32 +58,39 @@ pub fn curve_rows<'r>(
         };
     }
     let (from, to) = curve.first;
-    let is_wanted = |row: &&Located| {
+    let is_wanted = |row: &FirstRow<'_>| {
         let known = [BifurcationStatus::Located, BifurcationStatus::Unchecked];
-        known.contains(&row.status()) && (from..=to).contains(&row.value)
+        known.contains(&row.status()) && (from..=to).contains(&row.value())
     };
     Ok(rows.filter(is_wanted).collect())
 }
 
-fn by_label<'r>(label: &str, result: &'r SweepResult) -> Result<&'r Located, Report> {
-    let rows = || result.bifurcations();
-    rows().find(|row| row.label == label).ok_or_else(|| {
-        Diagnostic::new(format!("the sweep has no P-bifurcation `{label}`"))
+/// P- and D-bifurcations of a sweep.
+fn all_rows(result: &SweepResult) -> impl Iterator<Item = FirstRow<'_>> {
+    result.labels.iter().filter_map(|label| {
+        let shape = label.bifurcation().map(FirstRow::Shape);
+        shape.or_else(|| label.d_bifurcation().map(FirstRow::Stability))
+    })
+}
+
+fn followable(result: &SweepResult) -> impl Iterator<Item = FirstRow<'_>> {
+    all_rows(result).filter(|row| row.has_curve(result))
+}
+
+fn by_label<'r>(label: &str, result: &'r SweepResult) -> Result<FirstRow<'r>, Report> {
+    let rows = || all_rows(result);
+    rows().find(|row| row.label() == label).ok_or_else(|| {
+        Diagnostic::new(format!("the sweep has no P- or D-bifurcation `{label}`"))
             .allowed(rows_in_words(result))
-            .nearest(label, rows().map(|row| row.label.as_str()))
+            .nearest(label, rows().map(FirstRow::label))
             .into()
     })
 }
 
 /// The rows that curves can be followed from.
 fn rows_in_words(result: &SweepResult) -> String {
-    let family = &result.subject.family;
-    let rows = result.bifurcations().filter(|row| row.zero.is_some());
-    let rows: Vec<String> = rows
-        .map(|row| {
-            let observable = row.observable.name(family);
-            format!("{} ({} of {observable})", row.label, row.method())
-        })
+    let rows: Vec<String> = followable(result)
+        .map(|row| format!("{} ({})", row.label(), row.words(result)))
         .collect();
     if rows.is_empty() {
         "no row of this sweep has an indicator to follow".to_owned()
@@ -91,12 +99,18 @@ fn rows_in_words(result: &SweepResult) -> String {
     }
 }
 
-pub(super) fn no_indicator(row: &Located, result: &SweepResult) -> Report {
-    let title = format!(
-        "{} was located by {}: it has no indicator whose zero could be followed",
-        row.label,
-        row.method()
-    );
+pub(super) fn no_indicator(row: FirstRow<'_>, result: &SweepResult) -> Report {
+    let title = match row {
+        FirstRow::Shape(row) => format!(
+            "{} was located by {}: it has no indicator whose zero could be followed",
+            row.label,
+            row.method()
+        ),
+        FirstRow::Stability(row) => format!(
+            "{} is a zero of the exponent along the density, which is too dear at every value to be followed: sweep at other values of the second parameter instead",
+            row.label
+        ),
+    };
     Diagnostic::new(title).allowed(rows_in_words(result)).into()
 }
 

@@ -23,7 +23,7 @@ use crate::generator::{
 use crate::method::MethodError;
 use crate::space::{Axis, CellSpace};
 use crate::stationary::generator::{RateOptions, RateSolver};
-use crate::system::{HALF_TURN, Lanes, System, Tangent};
+use crate::system::{ExponentMethod, HALF_TURN, Lanes, System, Tangent};
 
 /// Harmonics of the angle that are tried one after the other.
 const HARMONICS: [usize; 8] = [3, 4, 6, 8, 12, 16, 22, 30];
@@ -76,7 +76,9 @@ pub(super) fn add_largest_exponent(
 ) -> Result<(), MethodError> {
     let (subject, space) = (source.problem.subject(), source.problem.space());
     let family = &subject.family;
-    let (true, Some((unknowns, changes))) = (family.questions.largest_exponent, known) else {
+    let by = ExponentMethod::Modes;
+    let is_asked = family.questions.largest_exponent == Some(by);
+    let Some((unknowns, changes)) = known.filter(|_| is_asked) else {
         return Ok(());
     };
     if subject.measures.is_empty() {
@@ -84,7 +86,7 @@ pub(super) fn add_largest_exponent(
     }
     let moments = unknown_moments(space, unknowns).into_iter();
     let scales: Vec<f64> = moments.map(|(_, variance)| variance.sqrt()).collect();
-    let Ok(tangent) = family.tangent(value, system, &scales) else {
+    let Ok(tangent) = family.tangent(value, system, (&scales, by)) else {
         report.findings.push(Finding::NoExponent);
         return Ok(());
     };

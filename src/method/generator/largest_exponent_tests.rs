@@ -6,9 +6,12 @@ use super::largest_exponent::Angles;
 use crate::cancellation::Cancellation;
 use crate::exponent::{Exponent, largest};
 use crate::method::GeneratorMethodOptions;
+use crate::monte_carlo::{TangentRun, exponent_along_trajectories, relaxation};
 use crate::sampling::{NormalStream, StreamKey};
 use crate::space::{Axis, CellSpace};
-use crate::system::{Family, Interpretation, LANES, Lanes, Path, System, TypedModel};
+use crate::system::{
+    ExponentMethod, Family, Interpretation, LANES, Lanes, Path, System, TypedModel,
+};
 
 /// Equations of x and y, and pairs of an axis and the amplitude of a noise on it.
 type Typed<'a> = ([&'a str; 2], &'a [(&'a str, &'a str)]);
@@ -30,7 +33,9 @@ fn family(([x, y], noises): Typed<'_>, (from, to): (f64, f64)) -> Family {
 fn by_angles(typed: Typed<'_>, p: f64, ends: [f64; 2], cells: usize) -> Option<Exponent> {
     let family = family(typed, (p, p));
     let system = family.at(p).unwrap();
-    let tangent = family.tangent(p, &system, &ends).unwrap();
+    let tangent = family
+        .tangent(p, &system, (&ends, ExponentMethod::Modes))
+        .unwrap();
     let axes = ends.map(|end| Axis::uniform(-end, end, cells).unwrap());
     let angles = Angles {
         tangent,
@@ -130,7 +135,9 @@ fn oscillators_of_constant_derivatives_have_the_exponent_of_the_linear_equation_
     let typed: Typed<'_> = (["y", "-x - 0.1*y"], &[("y", "p*x"), ("y", "0.3")]);
     let family = family(typed, (0.4, 0.4));
     let system = family.at(0.4).unwrap();
-    let tangent = family.tangent(0.4, &system, &[1.0, 1.0]).unwrap();
+    let tangent = family
+        .tangent(0.4, &system, (&[1.0, 1.0], ExponentMethod::Modes))
+        .unwrap();
     let exact = largest(&tangent.linear().unwrap()).unwrap();
     let found = by_angles(typed, 0.4, [4.5, 4.5], 32);
     assert_near(found, (exact.value, 1e-12), 5e-3);
@@ -216,4 +223,54 @@ fn exponents_of_random_oscillators_are_not_contradicted_by_paths() {
         );
     }
     assert!(unknown <= 5, "{unknown}");
+}
+
+/// The exponent by small deviations from trajectories of so many steps.
+fn by_trajectories(typed: Typed<'_>, ends: [f64; 2], steps: f64) -> Exponent {
+    let (family, never) = (family(typed, (0.0, 0.0)), Cancellation::new());
+    let system = family.at(0.0).unwrap();
+    let by = ExponentMethod::Trajectories;
+    let tangent = family.tangent(0.0, &system, (&[1.0, 1.0], by)).unwrap();
+    let axes = ends.map(|end| Axis::uniform(-end, end, 24).unwrap());
+    let space = CellSpace::new(axes.to_vec()).unwrap();
+    let relaxed = relaxation(system.as_ref(), &space, 3, &never).unwrap();
+    let run = TangentRun::of_steps(steps, &relaxed, 3);
+    let both = (system.as_ref(), &tangent);
+    let starts = relaxed.settled_states();
+    let found = exponent_along_trajectories(both, &space, starts, &run, &never);
+    let [exponent, _] = found.unwrap().unwrap();
+    Exponent {
+        value: exponent.value,
+        error: exponent.error(),
+    }
+}
+
+/// Exponents of some random oscillators by modes, where they are told, and by trajectories, each within both errors.
+fn assert_agreement(numbers: std::ops::Range<u64>, cells: usize, steps: f64) {
+    for number in numbers {
+        let (drift, [additive, parametric], ends) = random(number);
+        let noises = [("y", additive.as_str()), ("y", parametric.as_str())];
+        let typed: Typed<'_> = (["y", &drift], &noises);
+        let followed = by_trajectories(typed, ends, steps);
+        let size = followed.value.abs().max(0.1);
+        assert!(followed.error < 0.3 * size, "{number}: {followed:?}");
+        if let Some(found) = by_angles(typed, 0.0, ends, cells) {
+            let off = (found.value - followed.value).abs();
+            assert!(
+                off <= found.error + followed.error,
+                "{number}: {found:?} by modes, {followed:?} by trajectories: {drift}"
+            );
+        }
+    }
+}
+
+#[test]
+fn modes_and_trajectories_agree_within_their_errors() {
+    assert_agreement(0..1, 32, 3e6);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn modes_and_trajectories_agree_on_more_random_oscillators_at_length() {
+    assert_agreement(20..40, 48, 2e7);
 }

@@ -51,6 +51,11 @@ pub struct GeneratorSource {
 }
 
 impl GeneratorSource {
+    /// What it gives densities of.
+    pub(in crate::method) fn problem(&self) -> &Problem {
+        &self.problem
+    }
+
     /// Prepares a source.
     ///
     /// # Errors

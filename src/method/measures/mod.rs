@@ -15,11 +15,27 @@ pub(super) use spectra::measures as measures_of_spectrum;
 
 pub(super) use balance::broken;
 
-use super::exponents::exponent_columns;
+use crate::continuation::measure::{DIVERGENCE, EXPONENT};
 use crate::continuation::{Measure, MeasureColumn, MeasureKind, Subject};
 use crate::density::{EstimatedDensity, Observable};
 use crate::space::CellSpace;
 use crate::system::{Family, System};
+
+/// The columns of exponents, where a family asks for them.
+fn exponent_columns(family: &Family) -> impl Iterator<Item = MeasureColumn> {
+    let wanted: &[MeasureKind] = match (
+        &family.questions.fixed_point,
+        family.questions.largest_exponent,
+    ) {
+        (Some(_), _) => &[EXPONENT],
+        (None, Some(_)) => &[EXPONENT, DIVERGENCE],
+        (None, None) => &[],
+    };
+    wanted.iter().map(|&kind| MeasureColumn {
+        kind,
+        of: String::new(),
+    })
+}
 
 /// A measure that is derived when it is asked for.
 #[derive(Debug, Clone, Copy)]

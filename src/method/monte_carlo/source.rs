@@ -33,6 +33,11 @@ pub struct MonteCarloSource {
 }
 
 impl MonteCarloSource {
+    /// What it gives densities of.
+    pub(in crate::method) fn problem(&self) -> &Problem {
+        &self.problem
+    }
+
     /// Prepares a source: measures relaxation and time step at both ends and in the middle of the sweep, and
     /// chooses what is left to the program.
     ///

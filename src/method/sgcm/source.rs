@@ -65,6 +65,11 @@ impl SampledPoint {
 }
 
 impl SgcmSource {
+    /// What it gives densities of.
+    pub(in crate::method) fn problem(&self) -> &Problem {
+        &self.problem
+    }
+
     /// Prepares a source; steps left to the program are chosen here, once, so that the transition matrix varies
     /// smoothly along the sweep.
     ///

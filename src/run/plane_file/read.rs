@@ -59,8 +59,7 @@ pub(super) fn origin(value: &Value) -> Option<CurveOrigin> {
     Some(CurveOrigin {
         label: value["label"].as_str()?.to_owned(),
         value: number(&value["value"]),
-        before: read(&value["before"])?,
-        after: read(&value["after"])?,
+        sides: read(&value["sides"])?,
     })
 }
 

@@ -9,7 +9,7 @@ use crate::generator::AdvectiveScheme;
 use crate::method::{Correction, DerivedMeasure, Estimator, StepChoice};
 use crate::sampling::Integrator;
 use crate::stationary::Solver;
-use crate::system::{FieldKind, Interpretation, Model, NoiseKind, Sides, registry};
+use crate::system::{ExponentMethod, FieldKind, Interpretation, Model, NoiseKind, Sides, registry};
 
 /// A type of the program as the file has it.
 pub(super) trait InFile: Sized {
@@ -254,6 +254,7 @@ named!(
     DerivedMeasure,
     Estimator,
     ExponentKind,
+    ExponentMethod,
     Format,
     Ground,
     Integrator,

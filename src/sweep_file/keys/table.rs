@@ -18,7 +18,7 @@ use crate::sampling::Integrator;
 use crate::space::MOST_MODES;
 use crate::stationary::Solver;
 use crate::sweep_file::draft::{ExponentKind, MethodKind};
-use crate::system::{FieldKind, Interpretation, NoiseKind, Sides, registry};
+use crate::system::{ExponentMethod, FieldKind, Interpretation, NoiseKind, Sides, registry};
 
 /// Most cells an axis may have: edges are stored, so a slip of the pen must not fill the memory.
 const MOST_CELLS: i128 = 1_000_000;
@@ -240,7 +240,12 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("exponent.kind", Kind::Choice(ExponentKind::words), Rule("no exponent"), optional!(exponent),
         "`fixed-point`: the largest Lyapunov exponent of a fixed point that multiplicative noise leaves alone, at every value, and the values at \
          which it passes zero as rows `DB` (docs/exponents.md). On one axis or two. \
-         `largest`: that along the stationary density of a smooth system, with its rows `DB` and the mean divergence; by the generator."),
+         `largest`: that along the stationary density of a smooth system, with its rows `DB` and the mean divergence."),
+    key("exponent.method", Kind::Choice(ExponentMethod::words), Rule("`modes`"), optional!(exponent_method),
+        "How the exponent along the density (`largest`) is worked out. `modes`: from the density of state and direction, on one axis or two. \
+         `trajectories`: by small deviations from free trajectories, on up to four axes, with a standard error."),
+    key("exponent.steps", Kind::Number(POSITIVE), Rule("2e7"), optional!(exponent_steps),
+        "Steps of all trajectories together at every value (`trajectories`). The error falls with the root of their number."),
     key("exponent.at.<axis>", Kind::Number(ANY), Rule("0"),
         Field {
             get: |draft, name| draft.fixed_point.iter().find(|(known, _)| known == name).map(|(_, value)| value.to_plain()),

@@ -53,12 +53,13 @@ impl Settings {
             passages: self.passages_draft(),
             exponent: match self.family.questions.fixed_point {
                 Some(_) => Some(ExponentKind::FixedPoint),
-                None => self
-                    .family
-                    .questions
-                    .largest_exponent
-                    .then_some(ExponentKind::Largest),
+                None => {
+                    let asked = self.family.questions.largest_exponent;
+                    asked.map(|_| ExponentKind::Largest)
+                }
             },
+            exponent_method: self.family.questions.largest_exponent,
+            exponent_steps: Some(self.family.questions.exponent_steps).filter(|&steps| steps > 0.0),
             fixed_point: self.fixed_point_draft(),
             slow_modes: Some(self.family.questions.slow_modes).filter(|&wanted| wanted > 0),
             spectrum: super::spectrum::draft(&self.family),

@@ -6,15 +6,44 @@ use crate::sweep_file::diagnostic::Diagnostic;
 use crate::sweep_file::draft::{Draft, ExponentKind, MethodKind};
 use crate::sweep_file::names::quotable;
 use crate::sweep_file::reader::Reader;
-use crate::system::{Family, FixedPointFault, NoiseKind, TangentFault};
+use crate::system::{ExponentMethod, Family, FixedPointFault, NoiseKind, TangentFault};
 
 /// What to do where a state is moved.
 const FIXED: &str = "give under `exponent.at` a state at which the drift and every noise are zero all along the sweep, or leave `[exponent]` out";
 
+/// Steps of all trajectories, where nothing else is said: some seconds.
+const STEPS: f64 = 2e7;
+
 /// Reads `[exponent]` into what a family is asked for.
 pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, family: &mut Family) {
+    let by_paths = draft.exponent_method == Some(ExponentMethod::Trajectories);
+    let is_along = draft.exponent == Some(ExponentKind::Largest);
+    for (key, is_idle, remedy) in [
+        (
+            "method",
+            draft.exponent_method.is_some() && !is_along,
+            "leave it out, or write `kind = \"largest\"`",
+        ),
+        (
+            "steps",
+            draft.exponent_steps.is_some() && !(is_along && by_paths),
+            "leave it out, or write `method = \"trajectories\"`",
+        ),
+    ] {
+        if is_idle {
+            let title = format!("`exponent.{key}` says nothing of this exponent");
+            let place = reader.place(&["exponent", key]);
+            let diagnostic = Diagnostic::new(title).remedy(remedy);
+            reader.report(diagnostic.at(place, "this key"));
+        }
+    }
     if draft.exponent == Some(ExponentKind::Largest) {
-        family.questions.largest_exponent = is_along_density(reader, draft, family);
+        let is_known = is_along_density(reader, draft, family);
+        let by = draft.exponent_method.unwrap_or(ExponentMethod::Modes);
+        family.questions.largest_exponent = is_known.then_some(by);
+        if by == ExponentMethod::Trajectories {
+            family.questions.exponent_steps = draft.exponent_steps.unwrap_or(STEPS);
+        }
     } else {
         family.questions.fixed_point = fixed_point(reader, draft, family);
     }
@@ -23,25 +52,31 @@ pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, family: &mut Family) 
 /// Whether the exponent along the density can be worked out; what speaks against it is reported.
 fn is_along_density(reader: &mut Reader<'_>, draft: &Draft, family: &Family) -> bool {
     let (from, _) = family.ends();
+    let by = draft.exponent_method.unwrap_or(ExponentMethod::Modes);
+    let by_modes = by == ExponentMethod::Modes;
     let (words, remedy) = if !draft.fixed_point.is_empty() {
         (
             "`exponent.at` names a fixed point, and the largest exponent is wanted along the density".to_owned(),
             "leave `at` out, or write `kind = \"fixed-point\"`",
         )
-    } else if draft.method.kind != MethodKind::Generator {
+    } else if by_modes && draft.method.kind != MethodKind::Generator {
         (
-            "the largest Lyapunov exponent along a density is worked out by the generator alone"
+            "modes give the largest Lyapunov exponent along a density by the generator alone"
                 .to_owned(),
-            "write `method.kind = \"generator\"`, or leave `[exponent]` out",
+            "write `exponent.method = \"trajectories\"`, or `method.kind = \"generator\"`",
         )
     } else {
-        let Some(fault) = family.tangent_fault(from) else {
+        let Some(fault) = family.tangent_fault(from, by) else {
             return true;
         };
         let remedy = match fault {
             TangentFault::Rough => {
                 "smooth it (`v/sqrt(v^2 + e^2)` for `sign(v)`, `sqrt(v^2 + e^2)` for `abs(v)`), or leave `[exponent]` out"
             }
+            TangentFault::Axes { .. } | TangentFault::Turns => {
+                "write `exponent.method = \"trajectories\"`, or leave `[exponent]` out"
+            }
+            TangentFault::Walls => "write `exponent.method = \"modes\"`, or leave `[exponent]` out",
             _ => "leave `[exponent]` out",
         };
         (fault.to_string(), remedy)
