@@ -34,7 +34,7 @@ pub(super) fn read(
     let dimension = model.axes.len();
     let has_modes = |axis: usize| {
         let settings = axes.and_then(|axes| axes.get(axis));
-        settings.is_some_and(|axis| axis.modes_by(draft.method.kind).is_some())
+        settings.is_some_and(|axis| !axis.is_cut(draft.method.kind))
     };
     // What closes on itself is looked at, but for the phase of a forcing, in which nothing has a shape.
     let is_turn = |axis: usize| {
