@@ -16,6 +16,9 @@ const TRAJECTORIES: f64 = 2048.0;
 /// Burn-in in autocorrelation times: e⁻¹² = 6e-6 of the start is left.
 const BURN_IN: f64 = 12.0;
 
+/// Shortest time, in burn-ins, over which it is watched how angles turn: eight windows.
+const TURNING: f64 = 4.0;
+
 /// Share of the wanted error that an automatic time step may add as bias.
 const BIAS_SHARE: f64 = 0.5;
 
@@ -82,17 +85,26 @@ impl MonteCarloPlan {
             stride = 2 * (0.5 * longest / time_step).ceil() as usize;
             spacing = longest;
         }
-        let amount = match options.estimator {
+        let burn_in = options.burn_in.or(|| BURN_IN * relaxation_time);
+        let mut amount = match options.estimator {
             Estimator::Ergodic => ergodic(options, relaxed, (spacing, is_forced)),
             Estimator::Ensemble => ensemble(options, relaxed),
         };
+        let angles = |system: &Arc<dyn System>| {
+            let facts = system.facts();
+            facts.turns.keys().any(|axis| facts.phase != Some(*axis))
+        };
+        if options.estimator == Estimator::Ergodic && systems.iter().any(angles) {
+            let longest = amount.length.max(TURNING * burn_in);
+            amount.length = options.length.or(|| longest);
+        }
         Ok(Self {
             time_step,
             bias,
             relaxation_time,
             relaxation_resolved: relaxed.iter().all(|one| one.resolved),
             trajectories: amount.trajectories as usize,
-            burn_in: options.burn_in.or(|| BURN_IN * relaxation_time),
+            burn_in,
             length: amount.length,
             stride,
             error: amount.error,
