@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use numpy::{PyArray2, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::{PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pbif::system::{
     AxisDescription, LANES, Lanes, Model, Noise, ParameterDescription, System, TypedModel,
     contract, registry,
@@ -230,7 +230,7 @@ impl Drift {
         noises: Vec<Given>,
     ) -> PyResult<Self> {
         let names: Vec<String> = parameters.iter().map(|(name, _)| name.clone()).collect();
-        let mut typed = TypedModel::new("noise", "Noise", axes.clone());
+        let mut typed = TypedModel::new("noise", "Noise", axes.iter().map(String::as_str));
         for axis in &axes {
             typed = typed.with_equation(axis, format!("-{axis}"));
         }

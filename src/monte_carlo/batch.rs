@@ -2,8 +2,9 @@
 
 use multiversion::multiversion;
 
+use super::advances::Advances;
 use super::lookup::CellLookup;
-use super::turning::Advances;
+
 use crate::MAX_DIMENSION;
 use crate::cancellation::Cancelled;
 use crate::sampling::{NormalStream, Stepper, StreamKey, mix, unit};

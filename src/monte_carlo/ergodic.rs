@@ -113,7 +113,7 @@ pub fn ergodic(
         starts: Starts::among(starts, space),
         purpose: Purpose::Ergodic,
         turns: WholeTurn::of(system),
-        phases: Phases::of(system, space, run)?,
+        phases: Phases::of(system, space, run.time_step * run.stride as f64)?,
         run,
     };
     worker.all(space)

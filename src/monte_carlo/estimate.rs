@@ -1,8 +1,9 @@
 //! What a run of free trajectories estimates: cell masses, replicates for their errors, and what left Ω.
 
+use super::advances::{Rotation, rotation};
 use super::batch::Histogram;
 use super::phases::{Periodic, Phases};
-use super::turning::{Rotation, rotation};
+
 use crate::space::CellSpace;
 
 /// Blocks that standard errors rest on. Blocks are groups of independent trajectories, or, when there are fewer than

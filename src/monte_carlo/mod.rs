@@ -9,6 +9,7 @@
 //! **A time step is honest or told.** Every method with trajectories compares its step with half of it on coupled
 //! paths, once a sweep; the bias is a column.
 
+mod advances;
 mod autocorrelation;
 mod batch;
 mod ensemble;
@@ -26,6 +27,7 @@ mod tests;
 mod turning;
 mod walk;
 
+pub use advances::Rotation;
 pub use ensemble::{EnsembleRun, ensemble};
 pub use ergodic::{ErgodicRun, ergodic};
 pub(crate) use estimate::BLOCKS;
@@ -36,7 +38,7 @@ pub use passage::{PassageRun, PassageStart, SteadyStart, first_passages};
 pub use path::{PathRun, SamplePath, sample_path};
 pub use phases::Periodic;
 pub use relaxation::{Relaxation, relaxation};
-pub use turning::Rotation;
+
 pub use walk::PassageTarget;
 
 use crate::space::CellSpace;

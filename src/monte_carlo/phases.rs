@@ -2,8 +2,8 @@
 //!
 //! A cell along the phase stands for the phase at its beginning: cell j of n holds what is seen at the phase j/n.
 
+use super::MonteCarloError;
 use super::batch::Histogram;
-use super::{ErgodicRun, MonteCarloError};
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes, System};
 
@@ -19,14 +19,14 @@ pub(super) struct Phases {
 }
 
 impl Phases {
-    /// Those of a run; `None` of a system without forcing.
+    /// Those of a run with this time between looks; `None` of a system without forcing.
     ///
     /// # Errors
     /// [`MonteCarloError::Phases`] unless looks are one part of the period apart.
     pub(super) fn of(
         system: &dyn System,
         space: &CellSpace,
-        run: &ErgodicRun,
+        spacing: f64,
     ) -> Result<Option<Self>, MonteCarloError> {
         let Some(axis) = system.facts().phase else {
             return Ok(None);
@@ -34,7 +34,6 @@ impl Phases {
         let parts = space.axes()[axis].count();
         let frequency = system.drift_at(0.0, &vec![0.0; system.dimension()])[axis];
         let wanted = 1.0 / (frequency * parts as f64);
-        let spacing = run.time_step * run.stride as f64;
         // Also for what is not a number.
         if (spacing / wanted - 1.0).abs() <= ROUNDING {
             return Ok(Some(Self { axis, parts }));
