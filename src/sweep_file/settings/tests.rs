@@ -125,7 +125,7 @@ fn what_closes_on_itself_is_an_angle_of_harmonics() {
     assert!(spec.to_toml().contains("phi = \"periodic\""));
     let other = |word: &str, by: &str| radians.replace(word, by);
     #[rustfmt::skip]
-    let cases: [(String, &[&str], &[&str]); 10] = [
+    let cases: [(String, &[&str], &[&str]); 9] = [
         (text.clone(), &[], &["does not have the period", "it has"]),
         (other("sin(phi)", "phi"), &[], &["write sin(phi) or cos(phi)"]),
         (other("sin(phi)", "sgn(sin(phi))"), &[], &["jumps or bends"]),
