@@ -2,11 +2,14 @@
 from __future__ import annotations
 
 import html
+import uuid
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Callable
 
 from . import _pbif, _text
 from .found import Map, Path, Run, Solution, Tell, how
+
+Function = Callable[[Any, dict[str, float]], Any]
 
 
 class System:
@@ -21,12 +24,30 @@ class System:
     >>> row = run.changes["PB1"]
     >>> row.before, row.after, abs(row.value) < 1e-3
     ('1 peak', '2 peaks', True)
+
+    What formulas do not say, a function can: `drift` takes a batch of states as an array (n × axes, the columns in the
+    order of `axes`) and the parameters by name, and gives the drifts in the same shape. An amplitude in `noise` may be
+    such a function too, of n values or one. Both are called by many threads, one at a time, with states that move
+    freely: they must depend on nothing else, and on each state by itself. It is slow, some tens of microseconds for 64
+    states, and what follows from formulas is not known: bounds, symmetry, where a force jumps. What a function raises
+    is raised where the work was asked for, with a note of where. docs/python.md says more.
+
+    >>> import numpy as np
+    >>> def drift(states, p):
+    ...     x = states[:, 0]
+    ...     return (p["a"] * x - x**3)[:, np.newaxis]
+    >>> s = pbif.System(drift=drift, axes=["x"], noise={"x": "sqrt(s2)"}, a=0.0, s2=0.25)
+    >>> found = s.density("a", 0.5, cells={"x": {"from": -2.2, "to": 2.2, "count": 60}})
+    >>> found.signatures["x"]
+    '2 peaks'
     """
 
     def __init__(
         self,
         equations: str | Mapping[str, str] | None = None,
         *,
+        drift: Function | None = None,
+        axes: Sequence[str] = (),
         model: str | None = None,
         noise: Mapping[str, Any] | None = None,
         define: Mapping[str, str] | None = None,
@@ -45,16 +66,42 @@ class System:
             self._system["title"] = title
         self._system.update({name: dict(table) for name, table in tables.items() if table})
         self.parameters: dict[str, float] = {**(parameters or {}), **values}
+        self._drift: tuple[Function, list[str], dict[str, Any]] | None = None
+        if drift is not None:
+            if equations or model or define or bounds:
+                raise ValueError("a system with a `drift` has no equations, model, definitions or bounds beside it")
+            if isinstance(axes, str) or not axes:
+                raise ValueError('a system with a `drift` needs the names of its axes: axes=["x", "y"]')
+            unknown = [name for name in noise or {} if name not in axes]
+            if unknown:
+                raise ValueError(f"noise on `{unknown[0]}`, which is none of the axes {list(axes)}")
+            self._drift = (drift, list(axes), dict(noise or {}))
+            self._system = {"title": title} if title else {}
 
     def __repr__(self) -> str:
-        of = self._system.get("model") or self._system.get("equations")
+        of = self._drift or self._system.get("model") or self._system.get("equations")
         return f"<pbif.System {of} {self.parameters}>"
 
     def with_parameters(self, **values: float) -> System:
         """The same system with other values."""
         other = System(parameters={**self.parameters, **values})
-        other._system = self._system
+        other._system, other._drift = self._system, self._drift
         return other
+
+    def _lent(self, parameter: str) -> _pbif.Drift | None:
+        """The drift in Python as the library takes it, under a name that no other system has: what was solved of one
+        function is never taken for that of another."""
+        if self._drift is None:
+            return None
+        function, axes, noise = self._drift
+        noises = []
+        for name, given in noise.items():
+            for one in [given] if isinstance(given, str) or callable(given) or not isinstance(given, Sequence) else given:
+                text = None if callable(one) else str(one)
+                noises.append((axes.index(name), text, one if callable(one) else None))
+        values = {**self.parameters, parameter: self.parameters.get(parameter)}
+        name = f"python-{getattr(function, '__name__', 'drift')}-{uuid.uuid4().hex[:12]}"
+        return _pbif.Drift(name, self._system.get("title", "Drift in Python"), axes, list(values.items()), function, noises)
 
     def prepare(self, parameter: str, start: float, stop: float, points: int, **sections: Any) -> Sweep:
         """A sweep of a parameter that is ready to run: everything is checked, what is left to the library is chosen.
@@ -63,9 +110,12 @@ class System:
         `locate`, `passage={"exit": {"start": {"x": 0, "y": 0}, "until": "abs(x) > 2"}}`, `regions`, `watch`, `levels`,
         `map`, `figures`; docs/sweep-file.md has all keys."""
         held = {name: value for name, value in self.parameters.items() if name != parameter}
+        drift = self._lent(parameter)
         system = {**self._system, "parameters": held}
+        if drift is not None:
+            system = {"model": drift.name, "parameters": held}
         swept = {"parameter": parameter, "from": start, "to": stop, "points": points}
-        return Sweep(_text.document({"system": system, "sweep": swept, **sections}), name="system")
+        return Sweep(_text.document({"system": system, "sweep": swept, **sections}), name="system", _drift=drift)
 
     def sweep(
         self,
@@ -94,8 +144,15 @@ class System:
 class Sweep:
     """A sweep file: a text, checked and made ready to run. `settings` are set on top, as `--set` does."""
 
-    def __init__(self, text: str, name: str = "sweep.toml", settings: Mapping[str, Any] | Sequence[str] = ()) -> None:
-        self._made(_pbif.Sweep(name, text, _text.settings(settings)))
+    def __init__(
+        self,
+        text: str,
+        name: str = "sweep.toml",
+        settings: Mapping[str, Any] | Sequence[str] = (),
+        _drift: _pbif.Drift | None = None,
+    ) -> None:
+        self._drift = _drift
+        self._made(_pbif.Sweep(name, text, _text.settings(settings), _drift))
 
     def _made(self, raw: _pbif.Sweep) -> None:
         self._raw, self._about = raw, raw.about()
@@ -104,7 +161,8 @@ class Sweep:
     def read(cls, path: Path, settings: Mapping[str, Any] | Sequence[str] = ()) -> Sweep:  # type: ignore[valid-type]
         """Reads a sweep file."""
         made = cls.__new__(cls)
-        made._made(_pbif.Sweep(path, None, _text.settings(settings)))
+        made._drift = None
+        made._made(_pbif.Sweep(path, None, _text.settings(settings), None))
         return made
 
     def __repr__(self) -> str:
@@ -182,6 +240,8 @@ class Sweep:
         return self.session().solve(value)
 
     def __reduce__(self) -> tuple[Any, ...]:
+        if self._drift is not None:
+            raise TypeError("a sweep of a system with a drift in Python cannot be pickled: pickle the function, and make it anew")
         return Sweep, (self.toml,)
 
 

@@ -16,6 +16,7 @@ use pbif::sweep_file::{Report, Sweep, SweepFile};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
+use crate::drift::Failure;
 use crate::error;
 use crate::figure::Figure;
 use crate::home::Home;
@@ -28,6 +29,8 @@ pub(crate) struct Found {
     sweep: Arc<Sweep>,
     result: SweepResult,
     home: Option<Arc<Home>>,
+    /// What a drift in Python has raised.
+    failure: Option<Arc<Failure>>,
 }
 
 impl Found {
@@ -45,6 +48,7 @@ impl Found {
             sweep: Arc::clone(sweep),
             result,
             home: None,
+            failure: None,
         }
     }
 
@@ -53,7 +57,7 @@ impl Found {
         py: Python<'_>,
         sweep: &Arc<Sweep>,
         result: SweepResult,
-        home: Arc<Home>,
+        (home, failure): (Arc<Home>, Option<Arc<Failure>>),
     ) -> PyResult<Self> {
         let warnings = StoredRun::open(home.path()).map(|run| run.warnings().to_vec());
         error::warn(py, &warnings.unwrap_or_default())?;
@@ -61,6 +65,7 @@ impl Found {
             sweep: Arc::clone(sweep),
             result,
             home: Some(home),
+            failure,
         })
     }
 }
@@ -79,6 +84,7 @@ pub(crate) fn stored(py: Python<'_>, home: Arc<Home>, settings: &[String]) -> Py
             sweep: Arc::new(sweep),
             result,
             home: Some(home),
+            failure: None,
         }),
         Err(ReadError::Run(error)) => Err(error::run(py, &error)),
         Err(ReadError::File(report)) => Err(error::input(py, &report)),
@@ -339,10 +345,11 @@ impl Found {
             (out, _) => (Home::new(out)?, None),
         };
         let home = Arc::new(home);
-        let found = carried_out(py, job, home.path(), &how).inspect_err(|_| {
-            home.keep();
-            self.keep();
-        })?;
+        let found = carried_out(py, job, (home.path(), self.failure.as_deref()), &how)
+            .inspect_err(|_| {
+                home.keep();
+                self.keep();
+            })?;
         let plane = match found {
             Some(tree) => Plane::of_curves(&sweep, (plane, tree.curves), row, home),
             None => stored_plane(py, home)?,

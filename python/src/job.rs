@@ -9,6 +9,7 @@ use pbif::run::{JobFolder, Layout, PhaseSeconds, RunError};
 use pbif::sweep_file::Sweep;
 use pyo3::prelude::*;
 
+use crate::drift::Failure;
 use crate::error;
 use crate::watch::{told, watched};
 
@@ -107,7 +108,7 @@ impl<J: Job> Job for Brief<J> {
 pub(crate) fn carried_out<J>(
     py: Python<'_>,
     job: J,
-    home: &Path,
+    (home, failure): (&Path, Option<&Failure>),
     how: &How<'_>,
 ) -> PyResult<Option<J::Found>>
 where
@@ -118,7 +119,7 @@ where
     let (draws, resume, threads) = (how.figures, how.resume, how.threads);
     let mut job = Brief { job, draws };
     let kept = || home.exists().then_some(home);
-    let (ended, raised) = watched(py, &cancellation, how.tell.as_ref(), |tell| {
+    let (ended, raised) = watched(py, &cancellation, how.tell.as_ref(), failure, |tell| {
         let mut run = || {
             let start = if resume {
                 job.start(home)?

@@ -1,6 +1,7 @@
 //! `pbif._pbif`: the library as the Python package `pbif` calls it. Nothing is computed here: texts and numbers go in,
 //! texts, arrays and exceptions come out. What a user sees, with its documentation, is in `python/pbif/`.
 
+mod drift;
 mod error;
 mod figure;
 mod found;
@@ -75,6 +76,7 @@ fn _pbif(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(systems, module)?)?;
     module.add_function(wrap_pyfunction!(found::open, module)?)?;
     module.add_function(wrap_pyfunction!(plane::open_plane, module)?)?;
+    module.add_class::<drift::Drift>()?;
     module.add_class::<figure::Figure>()?;
     module.add_class::<found::Found>()?;
     module.add_class::<plane::Plane>()?;

@@ -213,7 +213,7 @@ impl Plane {
     /// The page of the explorer, as HTML; its densities are solved.
     fn page(&self, py: Python<'_>, tell: Option<Bound<'_, PyAny>>) -> PyResult<String> {
         let cancellation = Cancellation::new();
-        let (page, raised) = watched(py, &cancellation, tell.as_ref(), |tell| {
+        let (page, raised) = watched(py, &cancellation, tell.as_ref(), None, |tell| {
             let done =
                 |done, wanted| tell(("densities of the page".to_owned(), Some((done, wanted))));
             match &self.content {

@@ -8,6 +8,7 @@ use pbif::sweep_file::Sweep;
 use pbif::topology::Detector as _;
 use pyo3::prelude::*;
 
+use crate::drift::Failure;
 use crate::error;
 use crate::found::Found;
 use crate::watch::watched;
@@ -20,13 +21,16 @@ type Open = (Box<dyn pbif::continuation::Session>, Cancellation);
 pub(crate) struct Session {
     sweep: Arc<Sweep>,
     open: Mutex<Option<Open>>,
+    /// What a drift in Python has raised.
+    failure: Option<Arc<Failure>>,
 }
 
 impl Session {
-    pub(crate) fn new(sweep: &Arc<Sweep>) -> Self {
+    pub(crate) fn new(sweep: &Arc<Sweep>, failure: Option<Arc<Failure>>) -> Self {
         Self {
             sweep: Arc::clone(sweep),
             open: Mutex::default(),
+            failure,
         }
     }
 
@@ -76,7 +80,7 @@ impl Session {
             .as_ref()
             .map_or_else(Cancellation::new, |open| open.1.clone());
         let state = &mut *open;
-        let (point, raised) = watched(py, &cancellation, None, |_| {
+        let (point, raised) = watched(py, &cancellation, None, self.failure.as_deref(), |_| {
             self.point(state, (value, cancellation.clone()))
         });
         if let Some(raised) = raised {

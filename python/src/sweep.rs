@@ -8,9 +8,11 @@ use pbif::continuation::evenly_spaced;
 use pbif::job::{MapJob, SweepJob};
 use pbif::run::check_names;
 use pbif::sweep_file::{Report, SweepFile};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::drift::{Drift, Failure, verify};
 use crate::error;
 use crate::found::{Found, stored};
 use crate::home::Home;
@@ -23,6 +25,16 @@ use crate::watch::watched;
 #[pyclass(frozen, module = "pbif._pbif")]
 pub(crate) struct Sweep {
     inner: Arc<pbif::sweep_file::Sweep>,
+    /// What holds a drift in Python.
+    drift: Option<Py<Drift>>,
+}
+
+impl Sweep {
+    fn failure(&self) -> Option<Arc<Failure>> {
+        self.drift
+            .as_ref()
+            .map(|drift| Arc::clone(&drift.get().failure))
+    }
 }
 
 /// The sweep of a sweep file with settings on top.
@@ -47,9 +59,11 @@ impl Sweep {
         name: PathBuf,
         text: Option<String>,
         settings: Vec<String>,
+        drift: Option<Py<Drift>>,
     ) -> PyResult<Self> {
         let cancellation = Cancellation::new();
-        let (read, raised) = watched(py, &cancellation, None, |_| {
+        let failure = drift.as_ref().map(|drift| Arc::clone(&drift.get().failure));
+        let (read, raised) = watched(py, &cancellation, None, failure.as_deref(), |_| {
             let mut file = match &text {
                 Some(text) => SweepFile::parse(&name.display().to_string(), text),
                 None => SweepFile::read(&name)?,
@@ -61,8 +75,14 @@ impl Sweep {
         }
         let (sweep, warnings) = read.map_err(|report| error::input(py, &report))?;
         error::warn(py, &warnings)?;
+        if failure.is_some() {
+            let tried = py.detach(|| verify(&sweep));
+            failure.as_deref().map_or(Ok(()), Failure::raised)?;
+            tried.map_err(|words| PyValueError::new_err(words))?;
+        }
         Ok(Self {
             inner: Arc::new(sweep),
+            drift,
         })
     }
 
@@ -99,9 +119,11 @@ impl Sweep {
     fn run(&self, py: Python<'_>, out: Option<PathBuf>, how: How<'_>) -> PyResult<Found> {
         let home = Arc::new(Home::new(out)?);
         let job = SweepJob::new(&self.inner);
-        let found = carried_out(py, job, home.path(), &how).inspect_err(|_| home.keep())?;
+        let failure = self.failure();
+        let found = carried_out(py, job, (home.path(), failure.as_deref()), &how)
+            .inspect_err(|_| home.keep())?;
         match found {
-            Some(found) => Found::of_run(py, &self.inner, found, home),
+            Some(found) => Found::of_run(py, &self.inner, found, (home, self.failure())),
             None => stored(py, home, &[]),
         }
     }
@@ -110,7 +132,9 @@ impl Sweep {
     fn map(&self, py: Python<'_>, out: Option<PathBuf>, how: How<'_>) -> PyResult<Plane> {
         let home = Arc::new(Home::new(out)?);
         let job = MapJob::new(&self.inner);
-        let found = carried_out(py, job, home.path(), &how).inspect_err(|_| home.keep())?;
+        let failure = self.failure();
+        let found = carried_out(py, job, (home.path(), failure.as_deref()), &how)
+            .inspect_err(|_| home.keep())?;
         match found {
             Some(map) => Ok(Plane::of_map(&self.inner, map, home)),
             None => stored_plane(py, home),
@@ -119,6 +143,6 @@ impl Sweep {
 
     /// Opens a session.
     fn session(&self) -> Session {
-        Session::new(&self.inner)
+        Session::new(&self.inner, self.failure())
     }
 }

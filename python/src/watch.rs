@@ -7,6 +7,8 @@ use pbif::cancellation::Cancellation;
 use pbif::job::Progress;
 use pyo3::prelude::*;
 
+use crate::drift::Failure;
+
 /// How often signals are asked for. An interrupt waits no longer than this before the work is asked to stop.
 const PATIENCE: Duration = Duration::from_millis(20);
 
@@ -31,11 +33,13 @@ pub(crate) fn told(step: &Progress<'_>) -> Told {
 }
 
 /// Carries out `work` without holding the interpreter, and calls `tell` with what it tells. A signal whose handler
-/// raises, as that of Ctrl-C does, and a `tell` that raises cancel the work; what was raised comes beside what it gave.
+/// raises, as that of Ctrl-C does, a `tell` that raises, and a drift in Python that raises cancel the work; what was
+/// raised comes beside what it gave.
 pub(crate) fn watched<T: Send>(
     py: Python<'_>,
     cancellation: &Cancellation,
     tell: Option<&Bound<'_, PyAny>>,
+    failure: Option<&Failure>,
     work: impl FnOnce(&(dyn Fn(Told) + Sync)) -> T + Send,
 ) -> (T, Option<PyErr>) {
     let (say, mut said) = mpsc::channel::<Told>();
@@ -57,6 +61,7 @@ pub(crate) fn watched<T: Send>(
             });
             let react = || {
                 py.check_signals()?;
+                failure.map_or(Ok(()), Failure::raised)?;
                 match (&heard, tell) {
                     (Ok((words, counts)), Some(tell)) => tell.call1((words, *counts)).map(drop),
                     _ => Ok(()),
@@ -73,6 +78,8 @@ pub(crate) fn watched<T: Send>(
             }
         }
         let ended = py.detach(|| working.join());
+        // What was raised after the last look.
+        raised = raised.or_else(|| failure.and_then(|failure| failure.raised().err()));
         (
             ended.unwrap_or_else(|fault| std::panic::resume_unwind(fault)),
             raised,

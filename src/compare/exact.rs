@@ -93,10 +93,19 @@ fn axes_of(space: &CellSpace, observable: Observable) -> Result<Vec<Axis>, Densi
     .collect()
 }
 
-/// The axes that a density is brought to: those of the common cells. Quantities have the same bins by every method.
-pub(super) fn common_axes(common: &CellSpace, estimated: &EstimatedDensity) -> Vec<Axis> {
-    let axes = estimated.observable.axes().into_iter();
-    let own = axes.zip(&estimated.density.axes);
+/// The axes that a density is brought to: those of the common cells, also at a phase. Quantities have the same bins by
+/// every method.
+pub(super) fn common_axes(
+    family: &Family,
+    common: &CellSpace,
+    estimated: &EstimatedDensity,
+) -> Vec<Axis> {
+    let axes = estimated.observable.axes();
+    let axes = match family.at_phase(&axes) {
+        Some((kept, _)) => kept,
+        None => axes,
+    };
+    let own = axes.into_iter().zip(&estimated.density.axes);
     own.map(|(axis, own)| common.axes().get(axis).unwrap_or(own).clone())
         .collect()
 }

@@ -14,6 +14,8 @@ mod method;
 mod observer;
 mod overlap;
 mod solve;
+#[cfg(test)]
+mod turns_tests;
 
 pub use accuracy::{Accuracy, AccuracyPoint, Reference};
 pub use agreement::Agreement;
@@ -27,7 +29,7 @@ pub use solve::{Solved, Work};
 
 use crate::cancellation::Cancellation;
 use crate::continuation::Subject;
-use crate::density::{EstimatedDensity, Observable};
+use crate::density::{BINS_OF_A_TURN, EstimatedDensity, Observable};
 use crate::method::{GeneratorMethodOptions, MethodError, MonteCarloOptions, Problem, SgcmOptions};
 use crate::space::{Axis, CellSpace};
 use observer::Steps;
@@ -75,7 +77,7 @@ pub struct Pair {
 pub struct ComparedValue {
     /// The value.
     pub value: f64,
-    /// The methods in the order of [`Method::ALL`].
+    /// The methods in the order of [`Method::ALL`]; without SGCM where an axis closes on itself.
     pub solved: Vec<Solved>,
     /// Every two methods with a density, and every method with the exact density where it is known, a row an
     /// observable.
@@ -220,11 +222,20 @@ pub fn common_cells(space: &CellSpace) -> Result<CellSpace, crate::space::SpaceE
     uniform_cells(space, PAPER_CELLS)
 }
 
+/// Whether SGCM takes part: it maps no cells of angles and phases.
+pub(crate) fn has_cell_map(problem: &Problem) -> bool {
+    !problem.space().axes().iter().any(Axis::is_closed)
+}
+
 /// Cells of equal width over the ranges of `space`: `count` along the first two axes.
 fn uniform_cells(space: &CellSpace, count: usize) -> Result<CellSpace, crate::space::SpaceError> {
     let axes = space.axes().iter().enumerate();
     let axes: Result<Vec<Axis>, _> = axes
         .map(|(index, axis)| {
+            if axis.is_closed() {
+                // Two bins of those that densities along an angle are laid out on.
+                return Axis::turn(axis.from(), axis.to(), BINS_OF_A_TURN / 2);
+            }
             let count = match (index < 2, axis.is_modes()) {
                 (true, _) => count,
                 (false, true) => MODE_CELLS,
@@ -250,7 +261,8 @@ pub fn compare(
 ) -> Result<Comparison, CompareError> {
     let common = common_cells(task.problem.space())?;
     // Preparation, the generator, SGCM by both corrections, Monte Carlo; and the error against time.
-    let total = 2 + 3 * task.at.len();
+    let methods = if has_cell_map(task.problem) { 3 } else { 2 };
+    let total = 2 + methods * task.at.len();
     let mut steps = Steps::new(observer, total, cancellation);
     steps.next("choosing steps".to_owned())?;
     let sources = Sources::new(task, &common, cancellation)?;
@@ -283,8 +295,10 @@ impl Comparison {
             let at = |method: &str| format!("{parameter} = {value}: {method}");
             steps.next(at("generator"))?;
             let mut solved = steps.solved(&mut || Ok(vec![sources.generator(value)?]))?;
-            steps.next(at("SGCM"))?;
-            solved.extend(steps.solved(&mut || sources.sgcm(value))?);
+            if has_cell_map(task.problem) {
+                steps.next(at("SGCM"))?;
+                solved.extend(steps.solved(&mut || sources.sgcm(value))?);
+            }
             steps.next(at("Monte Carlo"))?;
             solved.extend(steps.solved(&mut || Ok(vec![sources.monte_carlo(value)?]))?);
             let pairs = pairs(task, &self.common, value, &solved)?;

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::exact::common_axes;
-use super::{CompareError, Method, PAPER_MAP_STEP, Task, overlap::rebin_density};
+use super::{CompareError, Method, PAPER_MAP_STEP, Task, has_cell_map, overlap::rebin_density};
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
 use crate::density::EstimatedDensity;
@@ -12,6 +12,7 @@ use crate::method::{
     StepChoice,
 };
 use crate::space::CellSpace;
+use crate::system::Family;
 
 /// What a solve took.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -66,7 +67,8 @@ pub(super) struct Sources<'a> {
     task: &'a Task<'a>,
     common: &'a CellSpace,
     cancellation: &'a Cancellation,
-    sgcm: SgcmSource,
+    /// `None` where SGCM takes no part.
+    sgcm: Option<SgcmSource>,
     sgcm_seconds: f64,
     monte_carlo: MonteCarloSource,
     monte_carlo_seconds: f64,
@@ -79,7 +81,10 @@ impl<'a> Sources<'a> {
         cancellation: &'a Cancellation,
     ) -> Result<Self, CompareError> {
         let clock = Instant::now();
-        let sgcm = sgcm_on(task, common, cancellation)?;
+        let sgcm = match has_cell_map(task.problem) {
+            true => Some(sgcm_on(task, common, cancellation)?),
+            false => None,
+        };
         let sgcm_seconds = clock.elapsed().as_secs_f64();
         let clock = Instant::now();
         let problem = task.problem.on(common.clone())?;
@@ -106,8 +111,11 @@ impl<'a> Sources<'a> {
     }
 
     pub(super) fn sgcm(&self, value: f64) -> Result<Vec<Solved>, CompareError> {
+        let Some(source) = &self.sgcm else {
+            return Ok(Vec::new());
+        };
         let mut both = sgcm_both(
-            &self.sgcm,
+            source,
             &self.task.sgcm,
             self.common,
             value,
@@ -137,8 +145,11 @@ impl<'a> Sources<'a> {
         space: &CellSpace,
         value: f64,
     ) -> Result<Vec<Solved>, CompareError> {
+        let Some(source) = &self.sgcm else {
+            return Ok(Vec::new());
+        };
         sgcm_both(
-            &self.sgcm.on(space)?,
+            &source.on(space)?,
             &self.task.sgcm,
             self.common,
             value,
@@ -204,7 +215,8 @@ pub(super) fn generator_on(
         cells: space.n_cells(),
         ..Work::default()
     };
-    solved(Method::Generator, solution, work, None, common)
+    let on = (task.problem.family(), common);
+    solved(Method::Generator, solution, work, None, on)
 }
 
 /// The cell map plain and slope-corrected, from the same samples.
@@ -247,7 +259,8 @@ fn sgcm_both(
             ..work.clone()
         };
         let step = Some(transitions.time_step());
-        solved(method, solution, work, step, common)
+        let on = (&source.subject().family, common);
+        solved(method, solution, work, step, on)
     })
     .collect()
 }
@@ -270,9 +283,10 @@ fn monte_carlo_by(
         ..Work::default()
     };
     let step = Some(source.plan().time_step);
+    let on = (&source.subject().family, common);
     Ok(Solved {
         share_outside: Some(estimate.share_outside),
-        ..solved(Method::MonteCarlo, solution, work, step, common)?
+        ..solved(Method::MonteCarlo, solution, work, step, on)?
     })
 }
 
@@ -282,12 +296,12 @@ fn solved(
     solution: Solution<'_>,
     work: Work,
     time_step: Option<f64>,
-    common: &CellSpace,
+    (family, common): (&Family, &CellSpace),
 ) -> Result<Solved, CompareError> {
     let densities = solution.densities.iter();
     let densities: Result<Vec<EstimatedDensity>, CompareError> = densities
         .map(|density| {
-            let axes = common_axes(common, density);
+            let axes = common_axes(family, common, density);
             Ok(rebin_density(density, &axes)?)
         })
         .collect();

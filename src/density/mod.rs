@@ -37,7 +37,7 @@ pub(crate) use moments::{EstimatedMoments, Roughness, excess_variances, jackknif
 pub use profile::{Extremum, Profile, SlopeJump, Turn};
 pub use projection::Projection;
 pub(crate) use projection::{QuantityMoments, phase_factors, times};
-pub(crate) use series_map::layout_axis;
+pub(crate) use series_map::{BINS_OF_A_TURN, layout_axis};
 pub(crate) use spread::{Coordinate, Detail};
 pub use structure::{Kink, Structure, Variants};
 pub use uncertainty::estimate;

@@ -214,7 +214,7 @@ impl Projection {
 }
 
 /// What masses of all cells are multiplied by, so that their sums along an axis that closes on itself are the density
-/// at a place on it.
+/// at a place on it. A cell of such an axis stands for the place at its beginning, where states were looked at.
 pub(crate) fn phase_factors(
     space: &CellSpace,
     axis: usize,
@@ -222,8 +222,16 @@ pub(crate) fn phase_factors(
     is_coarse: bool,
 ) -> Vec<f64> {
     let along = &space.axes()[axis];
-    let harmonics = along.mode_number() - usize::from(is_coarse);
-    let weights = along.weights_at(phase, harmonics);
+    let weights = if along.is_modes() {
+        let harmonics = along.mode_number() - usize::from(is_coarse);
+        along.weights_at(phase, harmonics)
+    } else {
+        let count = along.count();
+        let turns = (phase - along.from()) / (along.to() - along.from());
+        let nearest = (turns * count as f64).round() as usize % count;
+        let weight = |cell| if cell == nearest { count as f64 } else { 0.0 };
+        (0..count).map(weight).collect()
+    };
     let cells = 0..space.n_cells();
     cells
         .map(|cell| weights[space.position(cell, axis)])

@@ -8,7 +8,7 @@ use super::Observable;
 const BINS: usize = 60;
 
 /// Bins over one turn of an axis that closes on itself: two a wave of the highest harmonic that there may be.
-const BINS_OF_A_TURN: usize = 120;
+pub(crate) const BINS_OF_A_TURN: usize = 120;
 
 /// Modes that the coarser map leaves out: one of each parity, so that symmetric densities tell their error too.
 const LEFT_OUT: usize = 2;

@@ -9,7 +9,7 @@ const FRAME: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/page.css");
 
 /// The parts of the script in the order in which they need each other.
-const SCRIPT: [&str; 18] = [
+const SCRIPT: [&str; 19] = [
     include_str!("page/unpack.js"),
     include_str!("page/numbers.js"),
     include_str!("page/colours.js"),
@@ -23,6 +23,7 @@ const SCRIPT: [&str; 18] = [
     include_str!("page/state.js"),
     include_str!("page/page.js"),
     include_str!("page/controls.js"),
+    include_str!("page/phases.js"),
     include_str!("page/mapped.js"),
     include_str!("page/asking.js"),
     include_str!("page/paths.js"),

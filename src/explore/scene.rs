@@ -17,7 +17,7 @@ pub(super) struct Scene {
     swept: Swept,
     parameters: Vec<Parameter>,
     axes: Vec<Axis>,
-    /// Symbols of what moments are of: axes of the state, and quantities that are averaged.
+    /// Symbols of what moments are of: states that are no angles, quantities that are averaged, states at phases.
     moments: Vec<String>,
     observables: Vec<Watched>,
     /// The complete sweep file.
@@ -73,6 +73,9 @@ struct Watched {
     name: String,
     /// The axes of the state that it keeps, in its order.
     axes: Vec<usize>,
+    /// The phase in periods, of a density at a phase of a forcing, and the axes of the state that it is of.
+    phase: Option<f64>,
+    states: Vec<usize>,
 }
 
 /// A located bifurcation, an end or a failure.
@@ -99,9 +102,15 @@ impl Scene {
         let subject = sweep.problem.subject();
         let family = &subject.family;
         let (from, to) = family.ends();
-        let watched = |observable: &Observable| Watched {
-            name: observable.name(family),
-            axes: observable.axes(),
+        let watched = |observable: &Observable| {
+            let axes = observable.axes();
+            let at = family.at_phase(&axes);
+            Watched {
+                name: observable.name(family),
+                phase: at.as_ref().map(|(_, phase)| *phase),
+                states: at.map_or_else(|| axes.clone(), |(states, _)| states),
+                axes,
+            }
         };
         Self {
             program: concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION")).to_owned(),
@@ -190,13 +199,15 @@ fn axes(family: &Family) -> Vec<Axis> {
 }
 
 fn moments(family: &Family) -> Vec<String> {
-    let axes = family.model().axes.iter().map(|axis| axis.symbol.as_str());
-    let averaged = family
-        .questions
-        .averaged
-        .iter()
-        .map(|quantity| quantity.symbol());
-    axes.chain(averaged).map(str::to_owned).collect()
+    let axes = &family.model().axes;
+    let lines = family.states_on_lines();
+    let lines = lines.map(|(axis, _)| axes[axis].symbol.as_str());
+    let averaged = family.questions.averaged.iter().map(|one| one.symbol());
+    let quantities = family.quantities().iter();
+    let at_phases = quantities.filter(|one| one.phase().is_some_and(|at| !axes[at.axis].is_angle));
+    let at_phases = at_phases.map(|one| one.symbol());
+    let all = lines.chain(averaged).chain(at_phases);
+    all.map(str::to_owned).collect()
 }
 
 impl Label {

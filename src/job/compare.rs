@@ -31,16 +31,17 @@ impl<'a> CompareJob<'a> {
                 .remedy("leave `figures.at` out, or give values of the swept parameter");
             return Err(found.into());
         }
-        let family = sweep.problem.family();
-        let mut systems = family.along().into_iter().flatten();
-        let turn = systems.find_map(|system| system.facts().turns.keys().next().copied());
-        if let Some(axis) = turn {
+        let axes = sweep.problem.space().axes().iter();
+        let counted = axes
+            .clone()
+            .position(|axis| axis.is_closed() && !axis.is_modes());
+        if let Some(axis) = counted {
             let title = format!(
-                "`{}` closes on itself: only the generator solves such a system, and there is nothing to compare with",
-                family.axis(axis)
+                "`{}` closes on itself, and the method of the file has no harmonics for the generator",
+                sweep.problem.family().axis(axis)
             );
-            let found = Diagnostic::new(title).remedy("use `pbif sweep`");
-            return Err(found.into());
+            let remedy = "set `method.kind = \"generator\"`: Monte Carlo is compared with it whatever is set";
+            return Err(Diagnostic::new(title).remedy(remedy).into());
         }
         Ok(Self {
             made_of: describe(sweep),

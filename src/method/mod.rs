@@ -24,6 +24,7 @@ mod any;
 mod bins;
 mod cost;
 mod exponents;
+mod forcing;
 mod generator;
 mod lattice;
 mod measures;
@@ -72,6 +73,9 @@ use crate::sampling::SamplingError;
 use crate::stationary::StationaryError;
 use crate::stationary::generator::RateError;
 
+/// Most even parts of a forcing's period at which trajectories are looked at.
+const MOST_PHASES: usize = 120;
+
 /// Why a method cannot give a solution at all. Failed solves are data, see
 /// [`PointStatus`](crate::continuation::PointStatus).
 #[derive(Debug, thiserror::Error)]
@@ -90,14 +94,19 @@ pub enum MethodError {
     /// The drift depends on time.
     #[error(transparent)]
     Periodic(#[from] crate::system::PeriodicDrift),
-    /// A method that follows trajectories, of a system with an axis that closes on itself.
+    /// A cell map, of a system with an axis that closes on itself.
     #[error(
-        "axis `{axis}` closes on itself: phases and angles are for the generator (`method.kind = \"generator\"`)"
+        "axis `{axis}` closes on itself: phases and angles are for the generator and Monte Carlo (`method.kind`)"
     )]
     Turn {
         /// Name of the axis.
         axis: String,
     },
+    /// Monte Carlo, at phases of a forcing that are not parts of one division of the period.
+    #[error(
+        "the phases that are watched are no parts of a period divided evenly by at most {MOST_PHASES}, at which trajectories are looked at: give fractions of a common denominator up to there"
+    )]
+    Phases,
     /// Times of first passage, slow modes, or spectra, of a system with an axis that closes on itself.
     #[error(
         "axis `{axis}` closes on itself: times of first passage, slow modes and spectra are not worked out over phases and angles yet; leave `[passage]`, `[relaxation]` and `[spectrum]` out"

@@ -87,9 +87,9 @@ impl<'a> Reporter<'a> {
         self.report.of(&ESCAPE_RATE, "").unwrap_or(0.0)
     }
 
-    /// Means and standard deviations of the axes, then of the quantities that are averaged; those of angles and of a
-    /// phase, which depend on where the turn is cut, are left out. What may lie beyond the ends of the ranges adds to
-    /// their errors.
+    /// Means and standard deviations of the axes, of the quantities that are averaged, and of axes at phases of a
+    /// forcing; those of angles and of a phase, which depend on where the turn is cut, are left out. What may lie beyond
+    /// the ends of the ranges adds to their errors.
     pub(super) fn moments(&mut self, estimated: &[EstimatedMoments]) {
         let ends = tails::beyond(self.space(), (&self.beyond, self.leak), estimated);
         let family = self.problem.family();
@@ -97,8 +97,12 @@ impl<'a> Reporter<'a> {
         let lines: Vec<usize> = family.states_on_lines().map(|(index, _)| index).collect();
         let told = estimated.iter().enumerate();
         let told = told.filter(|(index, _)| *index >= axes || lines.contains(index));
+        let averaged = axes + family.questions.averaged.len();
+        let phases: Vec<usize> = family.at_phases().map(|(at, _)| at.axis).collect();
         for (name, (index, one)) in family.averages().zip(told) {
-            let beyond = ends.of(index, &one.moments);
+            let at_phase = index.checked_sub(averaged);
+            let of = at_phase.and_then(|number| phases.get(number).copied());
+            let beyond = ends.of(of.unwrap_or(index), &one.moments);
             let numbers = [
                 (
                     &MEAN,

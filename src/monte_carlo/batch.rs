@@ -2,7 +2,9 @@
 
 use multiversion::multiversion;
 
+use super::advances::Advances;
 use super::lookup::CellLookup;
+
 use crate::MAX_DIMENSION;
 use crate::cancellation::Cancelled;
 use crate::sampling::{NormalStream, Stepper, StreamKey, mix, unit};
@@ -62,7 +64,12 @@ impl Limits {
     pub(super) fn new(space: &CellSpace) -> Self {
         let axes = space.axes().iter();
         let limit = |from: f64, to: f64| (0.5 * (from + to), FAR * 0.5 * (to - from));
-        Self(axes.map(|axis| limit(axis.from(), axis.to())).collect())
+        // However far an angle turns, it does not run away.
+        let limit = |axis: &crate::space::Axis| match limit(axis.from(), axis.to()) {
+            (middle, _) if axis.is_closed() => (middle, f64::INFINITY),
+            limit => limit,
+        };
+        Self(axes.map(limit).collect())
     }
 
     /// Whether a state has not run away.
@@ -124,18 +131,22 @@ impl Batch {
 pub(super) struct Histogram {
     /// Looks that found each cell, and last those that found none.
     pub(super) counts: Vec<u64>,
-    /// Σ x and Σ x² over looks inside Ω, one pair an axis.
+    /// Σ x and Σ x² over looks inside Ω, one pair an axis; of a forced system so for each part of the period, the axes
+    /// fastest.
     pub(super) sums: Vec<[f64; 2]>,
     /// Looks at trajectories that had run away.
     pub(super) gone: u64,
+    /// How far angles advance, one an axis that closes on itself.
+    pub(super) advances: Vec<Advances>,
 }
 
 impl Histogram {
-    pub(super) fn new(lookup: &CellLookup, dimension: usize) -> Self {
+    pub(super) fn new(lookup: &CellLookup, dimension: usize, parts: usize, turns: usize) -> Self {
         Self {
             counts: vec![0; lookup.n_cells() + 1],
-            sums: vec![[0.0; 2]; dimension],
+            sums: vec![[0.0; 2]; dimension * parts],
             gone: 0,
+            advances: vec![Advances::default(); turns],
         }
     }
 
@@ -161,9 +172,11 @@ impl Histogram {
         sink.saturating_sub(self.gone)
     }
 
-    /// Counts one look at every trajectory of a batch.
-    pub(super) fn look(&mut self, lookup: &CellLookup, batch: &Batch) {
-        count(lookup, &batch.states, &mut self.counts, &mut self.sums);
+    /// Counts one look at every trajectory of a batch, at this part of the period.
+    pub(super) fn look(&mut self, lookup: &CellLookup, batch: &Batch, part: usize) {
+        let first = part * batch.states.len();
+        let sums = &mut self.sums[first..first + batch.states.len()];
+        count(lookup, &batch.states, &mut self.counts, sums);
     }
 
     /// Tells that looks since the last call were also at this many trajectories that had run away before.

@@ -5,7 +5,7 @@ use super::ergodic::{ErgodicRun, Starts, Worker, whole};
 use super::lookup::CellLookup;
 use super::{Estimate, MonteCarloError};
 use crate::cancellation::Cancellation;
-use crate::sampling::{Integrator, Stepper};
+use crate::sampling::{Integrator, Stepper, WholeTurn};
 use crate::space::CellSpace;
 use crate::system::System;
 
@@ -55,6 +55,9 @@ pub fn ensemble(
         length: 0.5 * last,
         stride,
     };
+    if system.facts().phase.is_some() {
+        return Err(MonteCarloError::Ensemble);
+    }
     as_ergodic.check(system, space)?;
     if !run.start.is_empty() && run.start.len() != space.dimension() {
         return Err(MonteCarloError::Start);
@@ -69,6 +72,8 @@ pub fn ensemble(
             run.start.clone()
         }),
         purpose: Purpose::Ensemble,
+        turns: WholeTurn::of(system),
+        phases: None,
         run: &as_ergodic,
     };
     worker.all(space)

@@ -7,9 +7,11 @@ use rayon::prelude::*;
 use super::batch::{Batch, Histogram, Limits, Purpose, key, random_point};
 use super::estimate::{BLOCKS, Estimate, Tally};
 use super::lookup::CellLookup;
+use super::phases::Phases;
+use super::turning::Turning;
 use super::{MonteCarloError, Relaxation};
 use crate::cancellation::{Cancellation, Cancelled};
-use crate::sampling::{Integrator, Stepper};
+use crate::sampling::{Integrator, Stepper, WholeTurn};
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes, System};
 
@@ -110,6 +112,8 @@ pub fn ergodic(
         limits: Limits::new(space),
         starts: Starts::among(starts, space),
         purpose: Purpose::Ergodic,
+        turns: WholeTurn::of(system),
+        phases: Phases::of(system, space, run.time_step * run.stride as f64)?,
         run,
     };
     worker.all(space)
@@ -167,6 +171,8 @@ pub(super) struct Worker<'a> {
     pub(super) limits: Limits,
     pub(super) starts: Starts<'a>,
     pub(super) purpose: Purpose,
+    pub(super) turns: Vec<WholeTurn>,
+    pub(super) phases: Option<Phases>,
     pub(super) run: &'a ErgodicRun,
 }
 
@@ -179,37 +185,78 @@ impl Worker<'_> {
             .with_max_len(1)
             .map(|batches| self.task(batches, blocks))
             .collect();
-        Ok(Estimate::new(space, parts?))
+        let axes: Vec<usize> = self.turns.iter().map(|turn| turn.axis).collect();
+        let window = (self.window() * self.run.stride) as f64 * self.run.time_step;
+        let blocks: Vec<Tally> = parts?;
+        Ok(Estimate::new(
+            space,
+            blocks,
+            self.phases.as_ref(),
+            (&axes, window),
+        ))
     }
 
     fn task(&self, batches: Range<usize>, blocks: usize) -> Result<Tally, MonteCarloError> {
         let dimension = self.limits.dimension();
-        let mut tally = Tally::new(vec![Histogram::new(self.lookup, dimension); blocks]);
+        let turns = self.turns.len();
+        let mut tally = Tally::new(vec![
+            Histogram::new(
+                self.lookup,
+                dimension,
+                self.parts(),
+                turns
+            );
+            blocks
+        ]);
         for number in batches {
             self.batch(number, &mut tally)?;
         }
         Ok(tally)
     }
 
+    /// Looks of a window over which an angle's advance is taken: half the burn-in, in whole periods of a forcing.
+    fn window(&self) -> usize {
+        let spacing = self.run.time_step * self.run.stride as f64;
+        let looks = (0.5 * self.run.burn_in / spacing).ceil() as usize;
+        looks.max(1).next_multiple_of(self.parts())
+    }
+
+    /// Looks of a period; 1 without a forcing.
+    fn parts(&self) -> usize {
+        self.phases.as_ref().map_or(1, |phases| phases.parts)
+    }
+
     fn batch(&self, number: usize, tally: &mut Tally) -> Result<(), Cancelled> {
         let run = self.run;
         let key = key(run.seed, self.purpose, number as u64);
-        let mut batch = Batch::new(
-            self.starts.batch(run.seed, number, self.limits.dimension()),
-            key,
-        );
+        let mut starts = self.starts.batch(run.seed, number, self.limits.dimension());
+        if let Some(phases) = &self.phases {
+            phases.set(&mut starts, 0);
+        }
+        let mut batch = Batch::new(starts, key);
+        let mut turning = Turning::new(&self.turns, self.window());
         let stretch = run.stride * LOOKS_A_CHECK;
         let mut burn_in = (run.burn_in / run.time_step).ceil() as usize;
         burn_in += burn_in % 2;
+        if self.phases.is_some() {
+            burn_in = burn_in.next_multiple_of(run.stride * self.parts());
+        }
         tally.trajectories += LANES as u64;
         while burn_in > 0 && batch.n_alive() > 0 {
             let steps = stretch.min(burn_in);
             self.advance(&mut batch, steps, tally)?;
+            turning.count(&mut batch);
             batch.retire(&self.limits);
             burn_in -= steps;
         }
-        let looks = (run.length / (run.time_step * run.stride as f64)).ceil() as usize;
+        turning.begin(&batch);
         let blocks = tally.blocks.len();
+        let mut looks = (run.length / (run.time_step * run.stride as f64)).ceil() as usize;
+        if let Some(phases) = &self.phases {
+            phases.set(&mut batch.states, 0);
+            looks = looks.next_multiple_of(phases.parts * blocks);
+        }
+        let mut done = 0;
         for block in 0..blocks {
             let mut left = (block + 1) * looks / blocks - block * looks / blocks;
             while left > 0 && batch.n_alive() > 0 {
@@ -217,7 +264,8 @@ impl Worker<'_> {
                 let gone = LANES - batch.n_alive();
                 for _ in 0..count {
                     self.advance(&mut batch, run.stride, tally)?;
-                    tally.blocks[block].look(self.lookup, &batch);
+                    done += 1;
+                    self.look(&mut batch, &mut turning, done, &mut tally.blocks[block]);
                 }
                 tally.blocks[block].exclude(gone, count);
                 batch.retire(&self.limits);
@@ -226,6 +274,25 @@ impl Worker<'_> {
         }
         tally.runaways += (LANES - batch.n_alive()) as u64;
         Ok(())
+    }
+
+    /// Counts a look, the one of this number, at every trajectory of a batch.
+    fn look(
+        &self,
+        batch: &mut Batch,
+        turning: &mut Turning<'_>,
+        number: usize,
+        block: &mut Histogram,
+    ) {
+        turning.count(batch);
+        turning.look(batch, &mut block.advances);
+        if let Some(phases) = &self.phases {
+            phases.set_to_cell(&mut batch.states, number);
+        }
+        block.look(self.lookup, batch, number % self.parts());
+        if let Some(phases) = &self.phases {
+            phases.set(&mut batch.states, number);
+        }
     }
 
     fn advance(&self, batch: &mut Batch, steps: usize, tally: &mut Tally) -> Result<(), Cancelled> {

@@ -1,6 +1,9 @@
 //! What a run of free trajectories estimates: cell masses, replicates for their errors, and what left Ω.
 
+use super::advances::{Rotation, rotation};
 use super::batch::Histogram;
+use super::phases::{Periodic, Phases};
+
 use crate::space::CellSpace;
 
 /// Blocks that standard errors rest on. Blocks are groups of independent trajectories, or, when there are fewer than
@@ -53,11 +56,21 @@ pub struct Estimate {
     pub steps: u64,
     /// Looks at trajectories that found them in Ω.
     pub looks: u64,
+    /// How each angle turns, where it was watched for long enough.
+    pub rotations: Vec<Rotation>,
+    /// Of a forced system, what was seen at each part of its period.
+    pub periodic: Option<Periodic>,
 }
 
 impl Estimate {
-    /// Merges the tasks in the order of their numbers.
-    pub(super) fn new(space: &CellSpace, parts: Vec<Tally>) -> Self {
+    /// Merges the tasks in the order of their numbers; `turns` are the axes whose advances over windows of one length
+    /// they have summed up.
+    pub(super) fn new(
+        space: &CellSpace,
+        parts: Vec<Tally>,
+        phases: Option<&Phases>,
+        (turns, window): (&[usize], f64),
+    ) -> Self {
         let sum = |value: fn(&Tally) -> u64| parts.iter().map(value).sum::<u64>();
         let (trajectories, runaways) = (sum(|part| part.trajectories), sum(|part| part.runaways));
         let steps = sum(|part| part.steps);
@@ -66,8 +79,9 @@ impl Estimate {
         let dimension = space.dimension();
         let mut total = Histogram {
             counts: vec![0; space.n_cells() + 1],
-            sums: vec![[0.0; 2]; dimension],
+            sums: vec![[0.0; 2]; blocks.first().map_or(dimension, |block| block.sums.len())],
             gone: 0,
+            advances: Vec::new(),
         };
         blocks.iter().for_each(|block| total.join(block));
         let (inside, outside) = (total.inside(), total.outside());
@@ -79,8 +93,13 @@ impl Estimate {
             (block.inside() > 0 && left > 0)
                 .then(|| pairs.map(|(a, b)| (a - b) as f64 / left as f64).collect())
         };
-        let mean: Vec<f64> = total.sums.iter().map(|sums| sums[0] * of_all).collect();
-        let variances = total.sums.iter().zip(&mean);
+        let mut sums = vec![[0.0; 2]; dimension];
+        for (index, part) in total.sums.iter().enumerate() {
+            let sums = &mut sums[index % dimension];
+            (sums[0], sums[1]) = (sums[0] + part[0], sums[1] + part[1]);
+        }
+        let mean: Vec<f64> = sums.iter().map(|sums| sums[0] * of_all).collect();
+        let variances = sums.iter().zip(&mean);
         Self {
             variance: variances
                 .map(|(sums, mean)| (sums[1] * of_all - mean * mean).max(0.0))
@@ -93,6 +112,15 @@ impl Estimate {
             runaway_rate: runaways as f64 / lived.max(f64::MIN_POSITIVE),
             steps,
             looks: inside,
+            periodic: phases.map(|phases| Periodic::new(phases, space, &blocks)),
+            rotations: turns
+                .iter()
+                .enumerate()
+                .filter_map(|(index, &axis)| {
+                    let advances = blocks.iter().map(|block| block.advances[index]);
+                    rotation(&advances.collect::<Vec<_>>(), axis, window)
+                })
+                .collect(),
         }
     }
 }

@@ -211,8 +211,8 @@ impl<'a> Comparison<'a> {
         let part =
             |share: f64| ((share / (SETTLE + COMPARE) * least / LOOK as f64) as usize).max(8);
         Self {
-            coarse: Stepper::new(system, integrator, time_step, cancellation),
-            fine: Stepper::new(system, integrator, 0.5 * time_step, cancellation),
+            coarse: Stepper::new(system, integrator, time_step, cancellation).within_a_turn(),
+            fine: Stepper::new(system, integrator, 0.5 * time_step, cancellation).within_a_turn(),
             channels: system.noises().len(),
             relaxation,
             quantities,

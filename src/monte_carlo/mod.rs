@@ -10,6 +10,7 @@
 //! **A time step is honest or told.** Every method with trajectories compares its step with half of it on coupled
 //! paths, once a sweep; the bias is a column.
 
+mod advances;
 mod autocorrelation;
 mod batch;
 mod ensemble;
@@ -20,12 +21,15 @@ mod halving;
 mod lookup;
 mod passage;
 mod path;
+mod phases;
 mod relaxation;
 mod tangent;
 #[cfg(test)]
 mod tests;
+mod turning;
 mod walk;
 
+pub use advances::Rotation;
 pub use ensemble::{EnsembleRun, ensemble};
 pub use ergodic::{ErgodicRun, ergodic};
 pub(crate) use estimate::BLOCKS;
@@ -34,6 +38,7 @@ pub use exit_times::{ExitNumber, ExitTimes};
 pub(crate) use halving::{BiasedQuantity, StepBias, TOLERATED_BIAS, automatic_step, step_bias};
 pub use passage::{PassageRun, PassageStart, SteadyStart, first_passages};
 pub use path::{PathRun, SamplePath, sample_path};
+pub use phases::Periodic;
 pub use relaxation::{Relaxation, relaxation};
 pub(crate) use tangent::{TangentRun, exponent_along_trajectories};
 pub use walk::PassageTarget;
@@ -55,6 +60,21 @@ pub enum MonteCarloError {
     /// No step between looks.
     #[error("looks at a trajectory must be at least one step apart")]
     Stride,
+    /// Looks at a forced system that are not even parts of a period apart.
+    #[error(
+        "looks are {spacing} apart, and of a forced system they must be {wanted} apart: a period in {parts} parts"
+    )]
+    Phases {
+        /// Time between looks.
+        spacing: f64,
+        /// What it must be.
+        wanted: f64,
+        /// Cells along the phase, each of which stands for the phase at its beginning.
+        parts: usize,
+    },
+    /// Many trajectories at one time, of a forced system.
+    #[error("an ensemble at one time shows a forced system at one phase: use time averages")]
+    Ensemble,
     /// A start that does not have a finite value for each axis.
     #[error("a state to start from does not have one finite value an axis")]
     Start,

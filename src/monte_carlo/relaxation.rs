@@ -19,6 +19,8 @@ const LOOKS: usize = 4;
 /// A window is long enough at this many autocorrelation times: all windows before it, together at least as long, are
 /// burn-in.
 const LONG: f64 = 30.0;
+/// Differences between numbers that are the same, relative to the largest of them.
+const ROUNDING: f64 = 1e-12;
 /// Most steps of one trajectory in a window.
 const MOST_STEPS: usize = 1 << 20;
 
@@ -97,8 +99,12 @@ pub fn relaxation(
     let pilot = pilot(system, space, seed, cancellation)?;
     let step = pilot.automatic_time_step(Integrator::StochasticHeun);
     let stepper = Stepper::new(system, Integrator::StochasticHeun, step, cancellation);
+    let stepper = stepper.within_a_turn();
+    let forced = system.facts().phase.is_some();
     let limits = Limits::new(space);
-    let mut watched: Vec<Watched> = (0..BATCHES).map(|n| start(space, seed, n)).collect();
+    let mut watched: Vec<Watched> = (0..BATCHES)
+        .map(|n| start((space, system.facts().phase), seed, n))
+        .collect();
     let mut stride = LOOKS;
     let watch = |watched: &mut Vec<Watched>, stride: usize| {
         let each = watched.par_iter_mut();
@@ -107,7 +113,11 @@ pub fn relaxation(
     watch(&mut watched, stride)?;
     loop {
         watch(&mut watched, stride)?;
-        let found = judge(&watched, pilot.clone(), step * (stride * LOOKS) as f64);
+        let found = judge(
+            &watched,
+            (pilot.clone(), forced),
+            step * (stride * LOOKS) as f64,
+        );
         let steps = RECORDS * LOOKS * stride;
         if found.resolved || found.settled.is_empty() || 2 * steps > MOST_STEPS {
             return Ok(found);
@@ -116,7 +126,8 @@ pub fn relaxation(
     }
 }
 
-fn start(space: &CellSpace, seed: u64, number: u64) -> Watched {
+/// Of a forced system all trajectories start at phase zero.
+fn start((space, phase): (&CellSpace, Option<usize>), seed: u64, number: u64) -> Watched {
     let dimension = space.dimension();
     let points: Vec<_> = (0..LANES as u64)
         .map(|lane| random_point(seed, number * LANES as u64 + lane, dimension))
@@ -124,7 +135,9 @@ fn start(space: &CellSpace, seed: u64, number: u64) -> Watched {
     let of_axis = |(axis, edges): (usize, &crate::space::Axis)| {
         let mut lanes = [0.0; LANES];
         for (value, point) in lanes.iter_mut().zip(&points) {
-            let share = if 2 * number >= BATCHES {
+            let share = if phase == Some(axis) {
+                0.0
+            } else if 2 * number >= BATCHES {
                 point[axis]
             } else {
                 0.5
@@ -189,9 +202,13 @@ fn series(
 }
 
 /// Reads the window: `spacing` is the time of one record.
-fn judge(watched: &[Watched], pilot: crate::sampling::Pilot, spacing: f64) -> Relaxation {
+fn judge(
+    watched: &[Watched],
+    (pilot, forced): (crate::sampling::Pilot, bool),
+    spacing: f64,
+) -> Relaxation {
     let dimension = pilot.standard_deviation.len();
-    let found = correlations(watched, dimension, spacing);
+    let found = correlations(watched, dimension, forced, spacing);
     let alive: usize = watched.iter().map(|one| one.batch.n_alive()).sum();
     // Of what has run away, only how long it was watched is known.
     let longest = match alive {
@@ -225,12 +242,45 @@ struct Correlations {
     longest: f64,
 }
 
-fn correlations(watched: &[Watched], dimension: usize, spacing: f64) -> Correlations {
+/// How a number of all trajectories is correlated in time. Trajectories of a forced system have one phase, and what
+/// moves with it never dies out: there deviations from the mean of all of them at each time count.
+fn of_series(mut series: Vec<Vec<f64>>, forced: bool) -> Correlation {
+    if !forced || series.is_empty() {
+        return correlation(&series);
+    }
+    let count = series.len() as f64;
+    let means: Vec<f64> = (0..series[0].len())
+        .map(|record| series.iter().map(|one| one[record]).sum::<f64>() / count)
+        .collect();
+    let whole = means.iter().sum::<f64>() / means.len() as f64;
+    let largest = means
+        .iter()
+        .fold(0.0_f64, |most, mean| most.max(mean.abs()));
+    let mut apart = 0.0_f64;
+    for one in &mut series {
+        for (value, mean) in one.iter_mut().zip(&means) {
+            apart = apart.max((*value - mean).abs());
+            *value += whole - mean;
+        }
+    }
+    // What is left of a number that is the same for all, as the phase itself is, is rounding.
+    if apart <= ROUNDING * largest {
+        return Correlation {
+            mean: whole,
+            time: 0.5,
+            long_run_variance: 0.0,
+        };
+    }
+    correlation(&series)
+}
+
+fn correlations(watched: &[Watched], dimension: usize, forced: bool, spacing: f64) -> Correlations {
+    let correlation = |series: Vec<Vec<f64>>| of_series(series, forced);
     let power = |place: usize| {
         move |one: &Watched, record: usize, lane: usize| one.means[place][record][lane]
     };
     let first: Vec<Correlation> = (0..dimension)
-        .map(|axis| correlation(&series(watched, &power(2 * axis))))
+        .map(|axis| correlation(series(watched, &power(2 * axis))))
         .collect();
     let mean: Vec<f64> = first.iter().map(|found| found.mean).collect();
     let square = |axis: usize, one: &Watched, record: usize, lane: usize| {
@@ -239,13 +289,13 @@ fn correlations(watched: &[Watched], dimension: usize, spacing: f64) -> Correlat
     };
     let squares: Vec<Correlation> = (0..dimension)
         .map(|axis| {
-            correlation(&series(watched, &|one, record, lane| {
+            correlation(series(watched, &|one, record, lane| {
                 square(axis, one, record, lane)
             }))
         })
         .collect();
     let variance: Vec<f64> = squares.iter().map(|found| found.mean).collect();
-    let energy = correlation(&series(watched, &|one, record, lane| {
+    let energy = correlation(series(watched, &|one, record, lane| {
         let part =
             |axis: usize| square(axis, one, record, lane) / variance[axis].max(f64::MIN_POSITIVE);
         (0..dimension).map(part).sum()

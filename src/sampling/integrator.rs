@@ -32,7 +32,40 @@ pub(crate) struct Stepper<'a> {
     time_step: f64,
     noise: Vec<Channel<'a>>,
     mirrors: Vec<Mirror>,
+    turns: Vec<WholeTurn>,
     cancellation: Cancellation,
+}
+
+/// One turn of an axis that closes on itself.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct WholeTurn {
+    pub(crate) axis: usize,
+    from: f64,
+    pub(crate) length: f64,
+}
+
+impl WholeTurn {
+    /// Those of a system.
+    pub(crate) fn of(system: &dyn System) -> Vec<Self> {
+        let turns = system.facts().turns.iter();
+        let turn = |(&axis, &(from, to)): (&usize, &(f64, f64))| Self {
+            axis,
+            from,
+            length: to - from,
+        };
+        turns.map(turn).collect()
+    }
+
+    /// Whole turns from the one that is looked at to the one in which a coordinate is.
+    pub(crate) fn number(&self, x: f64) -> f64 {
+        ((x - self.from) / self.length).floor()
+    }
+
+    fn fold(&self, states: &mut [Lanes]) {
+        for x in &mut states[self.axis] {
+            *x -= self.length * self.number(*x);
+        }
+    }
 }
 
 /// A noise, and its amplitude times √dt where it is constant.
@@ -94,7 +127,17 @@ impl<'a> Stepper<'a> {
             time_step,
             noise: system.noises().iter().map(channel).collect(),
             mirrors: mirrors(system),
+            turns: Vec::new(),
             cancellation: cancellation.clone(),
+        }
+    }
+
+    /// The same with coordinates that close on themselves brought back to one turn after every step. Without it whole
+    /// turns add up.
+    pub(crate) fn within_a_turn(self) -> Self {
+        Self {
+            turns: WholeTurn::of(self.system),
+            ..self
         }
     }
 
@@ -143,11 +186,14 @@ impl<'a> Stepper<'a> {
         }
     }
 
-    /// Folds states back between the walls.
+    /// Folds states back between the walls, and into the turn.
     #[inline(always)]
     fn fold(&self, states: &mut [Lanes]) {
         for mirror in &self.mirrors {
             mirror.fold(states);
+        }
+        for turn in &self.turns {
+            turn.fold(states);
         }
     }
 

@@ -31,7 +31,7 @@ mod transition;
 
 pub use growth::sample_transitions;
 pub use integrator::Integrator;
-pub(crate) use integrator::Stepper;
+pub(crate) use integrator::{Stepper, WholeTurn};
 pub use options::SamplingOptions;
 pub use pilot::{Pilot, pilot};
 pub(crate) use random::{NormalStream, StreamKey, mix, unit};

@@ -4,8 +4,9 @@
 use std::sync::Arc;
 
 use super::diagnostic::Diagnostic;
+use super::draft::MethodKind;
 use super::report::Report;
-use super::settings::{AxisSettings, Grade, Modes, Settings, cell_space};
+use super::settings::{AxisSettings, Grade, Modes, ModesOf, Settings, cell_space};
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource as _, SourceError};
 use crate::density::{EstimatedDensity, Observable};
@@ -39,15 +40,11 @@ impl Settings {
         cancellation: &Cancellation,
     ) -> Result<(), Report> {
         let kind = self.method.kind;
-        let is_open = |axis: &AxisSettings| axis.count.is_none() && axis.modes_by(kind).is_none();
+        let is_open = |axis: &AxisSettings| axis.count.is_none() && axis.is_cut(kind);
         if !self.axes.iter().any(is_open) {
             return Ok(());
         }
-        let carried = self
-            .axes
-            .iter()
-            .filter(|axis| axis.modes_by(kind).is_some())
-            .count();
+        let carried = self.axes.iter().filter(|axis| !axis.is_cut(kind)).count();
         let place = (self.axes.len() - carried).clamp(1, COARSE.len()) - 1;
         let (first, most) = (COARSE[place], MOST[place] / (1 + carried));
         let second = even(first as f64 * FINER);
@@ -88,7 +85,7 @@ impl Settings {
     fn set_counts(&mut self, count: usize, ends: &[Arc<dyn System>]) {
         let kind = self.method.kind;
         for axis in &mut self.axes {
-            if axis.modes_by(kind).is_none() {
+            if axis.is_cut(kind) {
                 axis.count.get_or_insert(count);
             }
         }
@@ -158,6 +155,13 @@ impl Settings {
     ) -> Result<Option<Problem>, Report> {
         let mut trial = self.clone();
         trial.set_counts(count, ends);
+        // The generator judges, for which harmonics carry what closes on itself.
+        let is_turn = |axis: &AxisSettings| axis.series == ModesOf::Turn;
+        if trial.axes.iter().any(is_turn) {
+            trial.method.kind = MethodKind::Generator;
+            let turns = trial.axes.iter_mut().filter(|axis| is_turn(axis));
+            turns.for_each(|axis| axis.modes = axis.modes.or(Some(Modes::Auto)));
+        }
         let kind = trial.method.kind;
         for axis in &mut trial.axes {
             if axis.modes_by(kind) == Some(Modes::Auto) {

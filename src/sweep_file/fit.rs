@@ -6,6 +6,7 @@ use super::names::list;
 use super::report::Report;
 use super::settings::{AxisSettings, Modes, Settings};
 use super::sweep::Sweep;
+use crate::density::BINS_OF_A_TURN;
 use crate::stationary::generator::RateError;
 
 /// Room that is tried for at least, in units of what a point takes: finer cells check what is located.
@@ -24,7 +25,8 @@ impl Settings {
         axes.map(|axis| match axis.modes_by(self.method.kind) {
             Some(Modes::Number(count)) => count,
             Some(Modes::Auto) => 4,
-            None => axis.count.unwrap_or(1),
+            None if axis.is_cut(self.method.kind) => axis.count.unwrap_or(1),
+            None => BINS_OF_A_TURN,
         })
         .collect()
     }
@@ -51,8 +53,7 @@ impl Settings {
 
     /// Refuses cells whose least need exceeds the machine's memory; runs before anything is laid out.
     pub(super) fn check_memory(&self) -> Result<(), Report> {
-        let is_open =
-            |axis: &AxisSettings| axis.count.is_none() && axis.modes_by(self.method.kind).is_none();
+        let is_open = |axis: &AxisSettings| axis.count.is_none() && axis.is_cut(self.method.kind);
         if self.axes.iter().any(is_open) {
             return Ok(());
         }

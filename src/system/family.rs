@@ -285,15 +285,19 @@ impl Family {
     }
 
     /// Names of what means are taken of: the axes of the state that are no angles, then the quantities that are
-    /// averaged.
+    /// averaged, then axes at phases of a forcing.
     pub(crate) fn averages(&self) -> impl Iterator<Item = &str> {
         let axes = self.states_on_lines().map(|(_, name)| name);
-        axes.chain(
-            self.questions
-                .averaged
-                .iter()
-                .map(|quantity| quantity.name()),
-        )
+        let averaged = self.questions.averaged.iter().map(|one| one.name());
+        axes.chain(averaged)
+            .chain(self.at_phases().map(|(_, name)| name))
+    }
+
+    /// States at phases of the forcing that are watched and have a mean, which angles have not; with their names.
+    pub(crate) fn at_phases(&self) -> impl Iterator<Item = (AtPhase, &str)> {
+        let at = self.quantities.iter();
+        let at = at.filter_map(|quantity| Some((quantity.phase()?, quantity.name())));
+        at.filter(|(at, _)| !self.model.axes[at.axis].is_angle)
     }
 
     /// Axes that do not close on themselves, which angles and the phase of a forcing do, with their names.

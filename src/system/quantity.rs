@@ -36,7 +36,7 @@ const DENOMINATORS: u32 = 24;
 
 impl AtPhase {
     /// The phase as a text: a fraction with a small denominator, or decimals.
-    fn fraction(self) -> String {
+    pub(crate) fn fraction(self) -> String {
         let mut denominators = (1..=DENOMINATORS).map(f64::from);
         let whole = |q: &f64| (self.phase * q - (self.phase * q).round()).abs() < 1e-12;
         match denominators.find(whole) {

@@ -215,7 +215,7 @@ const press = (page, event) => {
     actions.ArrowDown = () => page.climb(-1);
   }
   // The slider of another parameter does with arrows what sliders do.
-  if (target.closest("#parameters") && event.key.startsWith("Arrow")) return;
+  if ((target.closest("#parameters") || target === $("phase")) && event.key.startsWith("Arrow")) return;
   const act = actions[event.key];
   if (!act) return;
   event.preventDefault();

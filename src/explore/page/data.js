@@ -3,7 +3,7 @@
 /** A watched density: its cells, and where it is worth looking at. */
 class Observable {
   constructor(told, axes, edges) {
-    Object.assign(this, { name: told.name, axes: told.axes, edges });
+    Object.assign(this, { name: told.name, axes: told.axes, phase: told.phase ?? null, states: told.states, edges });
     this.symbols = told.axes.map((axis) => axes[axis].symbol);
     this.joint = told.axes.length === 2;
     this.title = `p(${this.symbols.join(", ")})`;

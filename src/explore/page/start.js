@@ -11,6 +11,7 @@ const start = async () => {
   }
   else if (told.plane) buildSecond(page);
   connect(page);
+  connectPhases(page);
   page.restore(readAddress());
   // The page draws before the next picture of the screen; it is ready once that is done.
   requestAnimationFrame(() => {

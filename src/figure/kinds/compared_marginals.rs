@@ -159,7 +159,7 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     );
     let page_width = 2.0 * MARGIN + columns as f64 * step.0 - BETWEEN.0 + BESIDE;
     let heading = Heading::new(look, print.title, page_width);
-    let legend = Legend::new(look, entries(), page_width - 2.0 * MARGIN);
+    let legend = Legend::new(look, entries(comparison), page_width - 2.0 * MARGIN);
     let top = heading.height() + legend.height();
     // Panels of one axis stand below each other only where every axis has a column.
     let labelled_below = |number: usize| columns < watched.len() || number + columns >= all.len();
@@ -186,7 +186,11 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     Some(Figure::new(&page, caption, self::rows(comparison, is_marginal)).of_panels(count))
 }
 
-fn entries() -> Vec<(Swatch, String)> {
+fn entries(comparison: &Comparison) -> Vec<(Swatch, String)> {
+    let takes_part = |method: &Method| {
+        let mut all = comparison.values.iter().flat_map(|value| &value.solved);
+        all.any(|solved| solved.method == *method)
+    };
     let entry = |method: Method| match method {
         Method::MonteCarlo => (
             Swatch::Symbol(INK),
@@ -194,7 +198,8 @@ fn entries() -> Vec<(Swatch, String)> {
         ),
         method => (Swatch::Curve(stroke(method)), method.title().to_owned()),
     };
-    Method::ALL.into_iter().map(entry).collect()
+    let methods = Method::ALL.into_iter().filter(takes_part);
+    methods.map(entry).collect()
 }
 
 /// Lays out the panel of one marginal at one value; all values share the window of an axis.

@@ -37,6 +37,8 @@ pub(super) struct Overlaid<'a> {
     densities: Vec<(usize, Cow<'a, EstimatedDensity>)>,
     window: (f64, f64),
     up: Scale,
+    /// What stands above the panel.
+    above: String,
 }
 
 pub(super) const KIND: Kind = Kind {
@@ -73,7 +75,7 @@ fn draw(result: &SweepResult, chosen: &[&Point], print: &Print<'_>) -> Drawn {
     for number in 0..result.subject.observables.len() {
         all.extend(marginal(result, chosen, number, print));
     }
-    let page = draw_overlaid(&result.subject.family, chosen, &all, print)?;
+    let page = draw_overlaid(&values_of(&result.subject.family, chosen), &all, print)?;
     let values = chosen.iter().map(|point| point.value);
     let at = caption::at(&result.subject.family, values);
     let seen = format!("Steady-state marginal densities{at}.");
@@ -95,7 +97,10 @@ fn draw(result: &SweepResult, chosen: &[&Point], print: &Print<'_>) -> Drawn {
 }
 
 /// The points of a marginal's curve; with sampling noise its cells.
-fn as_drawn(estimated: &EstimatedDensity, window: Option<(f64, f64)>) -> Vec<(f64, f64, String)> {
+pub(super) fn as_drawn(
+    estimated: &EstimatedDensity,
+    window: Option<(f64, f64)>,
+) -> Vec<(f64, f64, String)> {
     let Some(window) = window else {
         return Vec::new();
     };
@@ -109,10 +114,16 @@ fn as_drawn(estimated: &EstimatedDensity, window: Option<(f64, f64)>) -> Vec<(f6
         .collect()
 }
 
-/// Draws a panel for each of some axes, in a legend the chosen points; `None` without a panel.
+/// What a legend says of points: their values.
+pub(super) fn values_of(family: &Family, points: &[&Point]) -> Vec<String> {
+    let points = points.iter();
+    points.map(|point| names::at(family, point.value)).collect()
+}
+
+/// Draws a panel for each of some axes, in a legend the words for the densities by their numbers; `None` without a
+/// panel.
 pub(super) fn draw_overlaid(
-    family: &Family,
-    chosen: &[&Point],
+    words: &[String],
     all: &[Overlaid<'_>],
     print: &Print<'_>,
 ) -> Option<Page> {
@@ -135,12 +146,13 @@ pub(super) fn draw_overlaid(
     // What rooms of their own leave over goes to the panels.
     let wide = (page_width - gaps - lefts.iter().sum::<f64>()) / columns as f64;
     let heading = Heading::new(look, print.title, page_width);
-    let entries = chosen.iter().enumerate().map(|(number, point)| {
+    let entries = words.iter().enumerate().map(|(number, words)| {
         let sample = Swatch::Curve(Stroke::curve(number));
-        (sample, names::at(family, point.value))
+        (sample, words.clone())
     });
     let legend = Legend::new(look, entries.collect(), page_width - 2.0 * MARGIN);
     let has_letters = look.has_letters && all.len() > 1;
+    let has_letters = has_letters || all.iter().any(|one| !one.above.is_empty());
     let above = if has_letters { 1.5 * TEXT } else { 6.0 };
     let top = heading.height() + legend.height() + above;
     let step = high + Scale::below() + if has_letters { above } else { MARGIN };
@@ -159,7 +171,7 @@ pub(super) fn draw_overlaid(
         let across = Scale::horizontal(look, one.window, wide, &one.axis);
         draw_panel(&page, (one, &across), rect);
         if has_letters {
-            write_above(&page, rect, with_letter(look, number, String::new()));
+            write_above(&page, rect, with_letter(look, number, one.above.clone()));
         }
     }
     Some(page)
@@ -208,7 +220,13 @@ impl<'a> Overlaid<'a> {
             densities,
             window,
             up,
+            above: String::new(),
         })
+    }
+
+    /// The same under a line.
+    pub(super) fn under(self, above: String) -> Self {
+        Self { above, ..self }
     }
 }
 

@@ -16,6 +16,8 @@ mod marginals;
 mod measures;
 mod pairs;
 mod peaks;
+mod period;
+mod phases;
 mod section;
 mod spectrogram;
 mod spectrum;
@@ -30,7 +32,7 @@ use crate::density::Observable;
 use crate::system::Family;
 
 /// The kinds of figures of a sweep, in the order in which they are drawn: a new kind is one line here.
-pub(super) const OF_SWEEPS: [Kind; 14] = [
+pub(super) const OF_SWEEPS: [Kind; 16] = [
     diagram::KIND,
     marginals::KIND,
     joint::KIND,
@@ -42,6 +44,8 @@ pub(super) const OF_SWEEPS: [Kind; 14] = [
     homology::KIND,
     health::KIND,
     measures::KIND,
+    phases::KIND,
+    period::KIND,
     field::KIND,
     spectrum::KIND,
     spectrogram::KIND,

@@ -8,7 +8,7 @@ use crate::space::Axis;
 use crate::topology::Between;
 
 use super::joint::DrawJoint;
-use super::marginals::{Overlaid, draw_overlaid};
+use super::marginals::{Overlaid, draw_overlaid, values_of};
 use super::{Kind, Sketch, Sweep};
 use crate::figure::canvas::page::Page;
 use crate::figure::canvas::symbols;
@@ -64,7 +64,11 @@ fn draw(joint: &Joint<'_>, is_conditional: bool, print: &Print<'_>) -> Option<Pa
         };
         panels.extend(Overlaid::new(print, own, sections.collect(), &title));
     }
-    draw_overlaid(&joint.result.subject.family, joint.points, &panels, print)
+    draw_overlaid(
+        &values_of(&joint.result.subject.family, joint.points),
+        &panels,
+        print,
+    )
 }
 
 /// The centre of symmetry of a joint density, else its summit.

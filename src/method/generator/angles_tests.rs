@@ -37,7 +37,7 @@ fn known(report: &SolveReport, name: &str) -> (f64, f64) {
 }
 
 /// θ' = A - sin(θ - s) - 0.4 sin(2 θ - 2 s) with white noise of intensity 2 D.
-fn washboard(shift: f64, d: f64) -> Arc<Model> {
+pub(crate) fn washboard(shift: f64, d: f64) -> Arc<Model> {
     TypedModel::new("washboard", "Washboard", ["theta"])
         .with_equation(
             "theta",
@@ -58,7 +58,7 @@ const STEPS: usize = 2400;
 
 /// Velocity and effective diffusion of a tilted washboard by Stratonovich's and Reimann's formulas (P. Reimann et al.,
 /// Phys. Rev. E 65, 031104, 2002), with I±(x) = e^{±U(x)/D} ∫ e^{∓U(x ∓ z)/D} dz over a turn of z; the density ∝ I-.
-fn exact(a: f64, d: f64) -> (f64, f64, Vec<f64>) {
+pub(crate) fn exact(a: f64, d: f64) -> (f64, f64, Vec<f64>) {
     let step = TAU / STEPS as f64;
     // U/D, and its fall over a turn.
     let periodic = |k: usize| {

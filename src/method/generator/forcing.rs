@@ -1,32 +1,13 @@
-//! How states answer to a periodic forcing: the amplitude with which the mean of a state moves at the forcing's
-//! frequency, 2 |⟨x⟩₁| with ⟨x⟩₁ the average of the mean times e^{-2πis} over the phase s; and its square over that
-//! of the forcing, the spectral amplification of stochastic resonance (P. Jung and P. Hänggi, *Phys. Rev. A* 44,
-//! 8032, 1991). The forcing's amplitude is that of the first harmonic of the drift, where it is the same everywhere
-//! and on one axis only.
-//!
-//! The error is what the second scheme changes, the last harmonic of the mean (what is left out is less), and what the
-//! solver leaves.
+//! With what error the generator knows how the mean of a state moves with the forcing: what the second scheme changes,
+//! the last harmonic of the mean (what is left out is less), and what the solver leaves.
 
-use nalgebra::Complex;
-
-use crate::continuation::Measure;
-use crate::continuation::measure::{AMPLIFICATION, AMPLITUDE};
-use crate::method::lattice::for_all_nodes;
-use crate::space::CellSpace;
-use crate::system::{Family, System};
+use crate::method::forcing::Forced;
 
 /// Times what the second scheme changes: both may err alike.
 const SAFETY: f64 = 2.0;
 
-/// Difference between first harmonics of the drift, over the largest, that is rounding.
-const ROUNDING: f64 = 1e-9;
-
 /// A steady state.
-pub(super) struct Forced<'a> {
-    pub(super) system: &'a dyn System,
-    pub(super) space: &'a CellSpace,
-    /// The axis of the phase.
-    pub(super) phase: usize,
+pub(super) struct Solved<'a> {
     /// The generator's unknowns, Σ = 1, and by how much those of the second scheme differ.
     pub(super) unknowns: &'a [f64],
     pub(super) change: &'a [f64],
@@ -34,95 +15,18 @@ pub(super) struct Forced<'a> {
     pub(super) error: f64,
 }
 
-impl Forced<'_> {
-    /// Amplitude and spectral amplification of all states of a family that are no angles.
-    pub(super) fn measures(&self, family: &Family) -> Vec<Measure> {
-        let forcing = self
-            .forcing_amplitude()
-            .filter(|amplitude| *amplitude > 0.0);
-        let mut found = Vec::new();
-        for (axis, name) in family.states_on_lines() {
-            let (amplitude, error) = self.amplitude(axis);
-            found.push(Measure {
-                error: Some(error),
-                ..AMPLITUDE.measure(name, amplitude)
-            });
-            found.extend(forcing.map(|forcing| Measure {
-                error: Some((2.0 * amplitude + error) * error / forcing.powi(2)),
-                ..AMPLIFICATION.measure(name, (amplitude / forcing).powi(2))
-            }));
-        }
-        found
-    }
-
-    /// Amplitude of the mean along an axis, with its error.
-    fn amplitude(&self, axis: usize) -> (f64, f64) {
-        let last = self.space.axes()[self.phase].mode_number();
-        let nodes = self.space.axes()[axis].nodes();
-        let largest = nodes.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-        let first = self.harmonic(axis, 1, self.unknowns);
-        let errors = [
-            SAFETY * self.harmonic(axis, 1, self.change).norm(),
-            self.harmonic(axis, last.max(2), self.unknowns).norm(),
-            largest * self.error,
-        ];
-        (2.0 * first.norm(), 2.0 * errors.iter().sum::<f64>())
-    }
-
-    /// Σ u x e^{-2πiks} over all nodes.
-    fn harmonic(&self, axis: usize, k: usize, unknowns: &[f64]) -> Complex<f64> {
-        let nodes = self.space.axes()[axis].nodes();
-        let waves = self.waves(k);
-        let cells = unknowns.iter().enumerate();
-        let terms = cells.map(|(cell, u)| {
-            let position = |axis| self.space.position(cell, axis);
-            waves[position(self.phase)] * (nodes[position(axis)] * u)
-        });
-        terms.sum()
-    }
-
-    /// e^{-2πiks} at the nodes of the phase.
-    fn waves(&self, k: usize) -> Vec<Complex<f64>> {
-        let nodes = self.space.axes()[self.phase].nodes().iter();
-        let turned = nodes.map(|s| Complex::from_polar(1.0, -std::f64::consts::TAU * k as f64 * s));
-        turned.collect()
-    }
-
-    /// Amplitude of the forcing, where it is added to the drift of one axis alone, the same everywhere.
-    fn forcing_amplitude(&self) -> Option<f64> {
-        let mut amplitudes = (0..self.space.dimension())
-            .filter(|&axis| axis != self.phase)
-            .map(|axis| self.forcing_of(axis))
-            .collect::<Option<Vec<f64>>>()?;
-        amplitudes.retain(|amplitude| *amplitude > 0.0);
-        match amplitudes[..] {
-            [amplitude] => Some(amplitude),
-            _ => None,
-        }
-    }
-
-    /// Amplitude of the first harmonic of the drift of an axis; `None` where it is not the same everywhere.
-    fn forcing_of(&self, axis: usize) -> Option<f64> {
-        let (waves, count) = (self.waves(1), self.space.axes()[self.phase].count());
-        let stride: usize = self.space.shape()[self.phase + 1..].iter().product();
-        let cells = self.space.n_cells();
-        let mut harmonics = vec![Complex::new(0.0, 0.0); cells / count];
-        let mut all = vec![[0.0; crate::system::LANES]; self.space.dimension()];
-        let mut fastest = 0.0_f64;
-        for_all_nodes(self.space, |first, states| {
-            self.system.drift(0.0, states, &mut all);
-            let drifts = all[axis].iter().enumerate().take(cells - first);
-            for (lane, drift) in drifts {
-                let cell = first + lane;
-                let place = cell / (stride * count) * stride + cell % stride;
-                harmonics[place] += waves[cell / stride % count] * *drift * (2.0 / count as f64);
-                fastest = fastest.max(drift.abs());
-            }
-        });
-        let one = harmonics[0];
-        let mut all = harmonics.iter();
-        let is_same = all.all(|other| (other - one).norm() <= ROUNDING * fastest);
-        let is_nothing = one.norm() <= ROUNDING * fastest;
-        is_same.then(|| if is_nothing { 0.0 } else { one.norm() })
-    }
+/// Amplitude of the mean along an axis, with its error.
+pub(super) fn amplitude(forced: &Forced<'_>, solved: &Solved<'_>, axis: usize) -> (f64, f64) {
+    let last = forced.space.axes()[forced.phase].mode_number();
+    let nodes = forced.space.axes()[axis].nodes();
+    let largest = nodes.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let errors = [
+        SAFETY * forced.amplitude(axis, 1, solved.change),
+        forced.amplitude(axis, last.max(2), solved.unknowns),
+        2.0 * largest * solved.error,
+    ];
+    (
+        forced.amplitude(axis, 1, solved.unknowns),
+        errors.iter().sum(),
+    )
 }

@@ -4,8 +4,9 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use super::at_phases::{OverPeriod, moments_at_phases};
 use super::coarse::{COARSE, Coarseness, rough_relaxation};
-use super::forcing::Forced;
+use super::forcing::{Solved, amplitude};
 use super::relaxation::Relaxation;
 use super::rotation::{Steady, rotation};
 use super::second::{Second, SecondSolve};
@@ -17,6 +18,7 @@ use crate::continuation::measure::{ESCAPE_RATE, FACTORISATIONS, NEGATIVE_MASS};
 use crate::continuation::{Measure, Solution};
 use crate::density::EstimatedDensity;
 use crate::generator::{cell_masses, resolution, summed_to_walls};
+use crate::method::forcing::Forced;
 use crate::method::measures::{Cells, Others};
 use crate::method::report::{QUIET_ESCAPE, Reporter};
 use crate::method::watched::planes;
@@ -87,7 +89,20 @@ impl GeneratorSession {
             Cow::Borrowed(_) => of_axes,
         };
         let of_quantities = maps.exact_moments(space, &masses, second.masses(), kinked)?;
-        let moments = [of_axes, of_quantities].concat();
+        let at_phases = moments_at_phases(
+            problem.family(),
+            &OverPeriod {
+                space,
+                unknowns,
+                second: second.unknowns(),
+                weights: &weights,
+                others: others.as_deref(),
+                masses: &masses,
+                planes: &planes,
+                closed: &self.source.closed_ends,
+            },
+        )?;
+        let moments = [of_axes, of_quantities, at_phases].concat();
         reporter.moments(&moments);
         reporter
             .report
@@ -156,11 +171,13 @@ impl GeneratorSession {
             system: solved.system.as_ref(),
             space: self.source.problem.space(),
             phase,
+        };
+        let solved = Solved {
             unknowns: &solved.steady.mass,
             change,
             error: solved.steady.info.error_estimate,
         };
-        forced.measures(family)
+        forced.measures(family, |axis| amplitude(&forced, &solved, axis))
     }
 
     /// The time in which deviations die out, where mass escapes: a neighbour's, or that of fewer cells, where it will

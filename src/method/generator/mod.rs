@@ -2,7 +2,8 @@
 //! of the next one, relaxation, and derivatives.
 
 #[cfg(test)]
-mod angles_tests;
+pub(in crate::method) mod angles_tests;
+mod at_phases;
 mod basins;
 mod coarse;
 mod cost;
@@ -32,7 +33,7 @@ mod stand;
 mod trail;
 mod truncation;
 #[cfg(test)]
-mod turns_tests;
+pub(in crate::method) mod turns_tests;
 mod unknowns;
 
 pub(super) use coarse::rough_masses;

@@ -53,7 +53,7 @@ fn mean(density: &Density) -> f64 {
 }
 
 /// x' = `drift` + A cos(w t), with white noise of intensity 2 D.
-fn forced(drift: &str) -> Arc<Model> {
+pub(crate) fn forced(drift: &str) -> Arc<Model> {
     TypedModel::new("forced", "Forced", ["x"])
         .with_equation("x", format!("{drift} + A cos(w t)"))
         .with_noise("x", ["sqrt(2 D)"])
@@ -63,7 +63,7 @@ fn forced(drift: &str) -> Arc<Model> {
 }
 
 /// ∫ of a normal density over a cell.
-fn normal(mean: f64, deviation: f64, edges: &[f64]) -> f64 {
+pub(crate) fn normal(mean: f64, deviation: f64, edges: &[f64]) -> f64 {
     let below = |x: f64| 0.5 * statrs::function::erf::erfc((mean - x) / deviation / 2_f64.sqrt());
     below(edges[1]) - below(edges[0])
 }
@@ -121,6 +121,47 @@ fn measured(
     let source = GeneratorSource::new(&problem, &GeneratorMethodOptions::default()).unwrap();
     let mut session = source.open(&Cancellation::new());
     session.solve(amplitude).unwrap().report
+}
+
+#[test]
+fn means_and_deviations_at_phases_are_those_of_the_moving_normal_density() {
+    let (w, d, a) = (1.3, 0.1, 0.5_f64);
+    let model = forced("-x");
+    let phases = [("0", 0.0), ("1_4", 0.25), ("3_5", 0.6)];
+    let quantities = phases.map(|(_, phase)| {
+        Arc::new(Quantity::at_phase(&model, AtPhase { axis: 0, phase }).unwrap())
+    });
+    let path = Path::parameter("A", a, a);
+    let family = Family::new(Arc::clone(&model), &[("w", w), ("D", d)], path).unwrap();
+    let family = family.with_quantities(quantities.to_vec());
+    for (cells, harmonics, most) in [(100, 12, 1e-4), (30, 4, 5e-2)] {
+        let axes = vec![
+            Axis::uniform(-2.6, 2.6, cells).unwrap(),
+            Axis::fourier(0.0, 1.0, harmonics).unwrap(),
+        ];
+        let bins = vec![axes[0].clone(); 3];
+        let space = CellSpace::new(axes).unwrap();
+        let watched = vec![Observable::Marginal(0)];
+        let problem = Problem::watching(family.clone(), space, watched, bins).unwrap();
+        let source = GeneratorSource::new(&problem, &GeneratorMethodOptions::default()).unwrap();
+        let mut session = source.open(&Cancellation::new());
+        let report = session.solve(a).unwrap().report;
+        for (name, phase) in phases {
+            let angle = std::f64::consts::TAU * phase;
+            let mean = a * (angle.cos() + w * angle.sin()) / (1.0 + w * w);
+            for (kind, exact) in [("mean", mean), ("sd", d.sqrt())] {
+                let name = format!("{kind}_x_phase_{name}");
+                let found = report.measure(&name).unwrap();
+                let error = report.error_of(&name).unwrap();
+                let off = (found - exact).abs();
+                assert!(
+                    off < error + 1e-9,
+                    "{cells} {name}: {found} ± {error:e}, {exact}"
+                );
+                assert!(error < most, "{cells} {name}: {error:e}");
+            }
+        }
+    }
 }
 
 #[test]

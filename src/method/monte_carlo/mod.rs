@@ -1,10 +1,13 @@
 //! Free trajectories: their settings, what a point costs, the plan of a sweep, the source.
 
+mod answers;
 mod cost;
 mod options;
 mod passages;
 mod plan;
 mod source;
+#[cfg(test)]
+mod turns_tests;
 
 pub(crate) use cost::MonteCarloCost;
 pub use options::{Estimator, MonteCarloOptions};

@@ -16,6 +16,9 @@ const TRAJECTORIES: f64 = 2048.0;
 /// Burn-in in autocorrelation times: e⁻¹² = 6e-6 of the start is left.
 const BURN_IN: f64 = 12.0;
 
+/// Shortest time, in burn-ins, over which it is watched how angles turn: eight windows.
+const TURNING: f64 = 4.0;
+
 /// Share of the wanted error that an automatic time step may add as bias.
 const BIAS_SHARE: f64 = 0.5;
 
@@ -43,6 +46,11 @@ pub(crate) struct MonteCarloPlan {
 }
 
 impl MonteCarloPlan {
+    /// Step of the integrator for a system: of a forced one the stride lasts one part of its period.
+    pub(super) fn step_of(&self, system: &dyn System, space: &CellSpace) -> f64 {
+        part_of_period(system, space).map_or(self.time_step, |part| part / self.stride as f64)
+    }
+
     /// Integrator steps of all trajectories at one parameter value.
     pub(crate) fn steps(&self) -> f64 {
         self.trajectories as f64 * (self.burn_in + self.length) / self.time_step
@@ -69,18 +77,34 @@ impl MonteCarloPlan {
         )?;
         let relaxation_time = relaxed.iter().map(|one| one.time).fold(0.0, f64::max);
         let strides = relaxed.iter().map(|one| ErgodicRun::stride(one, time_step));
-        let stride = strides.min().unwrap_or(2);
-        let amount = match options.estimator {
-            Estimator::Ergodic => ergodic(options, relaxed, stride as f64 * time_step),
+        let mut stride = strides.min().unwrap_or(2);
+        let mut spacing = stride as f64 * time_step;
+        let longest = longest_part(systems, space);
+        let is_forced = longest.is_some();
+        if let Some(longest) = longest {
+            stride = 2 * (0.5 * longest / time_step).ceil() as usize;
+            spacing = longest;
+        }
+        let burn_in = options.burn_in.or(|| BURN_IN * relaxation_time);
+        let mut amount = match options.estimator {
+            Estimator::Ergodic => ergodic(options, relaxed, (spacing, is_forced)),
             Estimator::Ensemble => ensemble(options, relaxed),
         };
+        let angles = |system: &Arc<dyn System>| {
+            let facts = system.facts();
+            facts.turns.keys().any(|axis| facts.phase != Some(*axis))
+        };
+        if options.estimator == Estimator::Ergodic && systems.iter().any(angles) {
+            let longest = amount.length.max(TURNING * burn_in);
+            amount.length = options.length.or(|| longest);
+        }
         Ok(Self {
             time_step,
             bias,
             relaxation_time,
             relaxation_resolved: relaxed.iter().all(|one| one.resolved),
             trajectories: amount.trajectories as usize,
-            burn_in: options.burn_in.or(|| BURN_IN * relaxation_time),
+            burn_in,
             length: amount.length,
             stride,
             error: amount.error,
@@ -102,6 +126,20 @@ impl MonteCarloPlan {
     }
 }
 
+/// Time between the phases at which a forced system is looked at.
+fn part_of_period(system: &dyn System, space: &CellSpace) -> Option<f64> {
+    let axis = system.facts().phase?;
+    let frequency = system.drift_at(0.0, &vec![0.0; system.dimension()])[axis];
+    Some(1.0 / (frequency * space.axes()[axis].count() as f64))
+}
+
+/// The longest of it along a sweep; and no shorter than some steps that follow the forcing.
+fn longest_part(systems: &[Arc<dyn System>], space: &CellSpace) -> Option<f64> {
+    let parts = systems.iter();
+    let parts = parts.filter_map(|system| part_of_period(system.as_ref(), space));
+    parts.reduce(f64::max)
+}
+
 /// How much is run, and the relative standard error of the variances that it gives.
 struct Amount {
     trajectories: f64,
@@ -110,11 +148,21 @@ struct Amount {
 }
 
 /// Long trajectories: the wanted error needs a total time. Each is looked at once at least.
-fn ergodic(options: &MonteCarloOptions, relaxed: &[Relaxation], shortest: f64) -> Amount {
+fn ergodic(
+    options: &MonteCarloOptions,
+    relaxed: &[Relaxation],
+    (shortest, is_sparse): (f64, bool),
+) -> Amount {
     // Total time that makes the relative error of every variance one.
     let times = relaxed.iter().map(|one| one.time);
     let averaging = relaxed.iter().flat_map(|one| &one.averaging_time).copied();
+    // Looks that are far apart know no more than independent states do.
+    let independent = relaxed.iter().map(|one| one.relative_square() * shortest);
     let averaging = times.chain(averaging).fold(0.0, f64::max);
+    let averaging = match is_sparse {
+        true => independent.fold(averaging, f64::max),
+        false => averaging,
+    };
     let trajectories = whole_batches(options.trajectories.or(|| TRAJECTORIES));
     let wanted = averaging / (options.error * options.error);
     let length = options.length.or(|| (wanted / trajectories).max(shortest));

@@ -1,6 +1,7 @@
 //! Free trajectories as a source of densities: the reference that shares neither cells' transitions nor solver with the
 //! other methods.
 
+use super::answers::{at_phases, rotations_and_answers, seen_at_phases};
 use super::passages::Setting;
 use super::{Estimator, MonteCarloOptions, MonteCarloPlan};
 use crate::cancellation::Cancellation;
@@ -12,7 +13,7 @@ use crate::method::problem::Maps;
 use crate::method::report::Reporter;
 use crate::method::structure::{closed_ends, kinked_surfaces};
 use crate::method::watched::Masses;
-use crate::method::{MethodError, Problem, has_densities, has_no_turns};
+use crate::method::{MethodError, Problem, has_densities};
 use crate::monte_carlo::{
     EnsembleRun, ErgodicRun, Estimate, MonteCarloError, Relaxation, ensemble, ergodic, relaxation,
 };
@@ -48,9 +49,13 @@ impl MonteCarloSource {
         options: &MonteCarloOptions,
         cancellation: &Cancellation,
     ) -> Result<Self, MethodError> {
+        let problem = &seen_at_phases(problem)?;
         let (systems, space) = (problem.family().along()?, problem.space());
-        has_no_turns(problem)?;
         has_densities(problem)?;
+        let is_forced = problem.family().model().phase_axis().is_some();
+        if is_forced && options.estimator == Estimator::Ensemble {
+            return Err(MonteCarloError::Ensemble.into());
+        }
         if let Some(one) = problem
             .family()
             .questions
@@ -124,7 +129,7 @@ impl MonteCarloSource {
         match options.estimator {
             Estimator::Ergodic => {
                 let run = ErgodicRun {
-                    time_step: plan.time_step,
+                    time_step: plan.step_of(system, space),
                     integrator: options.integrator,
                     seed: options.seed,
                     trajectories: plan.trajectories,
@@ -226,8 +231,11 @@ impl MonteCarloSource {
         });
         let of_axes: Vec<Moments> = of_axes.collect();
         let (space, replicates) = (self.problem.space(), &found.replicates);
-        let moments = maps.all_sampled_moments(space, &of_axes, &found.mass, replicates)?;
+        let mut moments = maps.all_sampled_moments(space, &of_axes, &found.mass, replicates)?;
+        moments.extend(at_phases(&self.problem, found));
         reporter.moments(&moments);
+        let more = rotations_and_answers(&self.problem, system, found, plan.bias);
+        reporter.report.measures.extend(more);
         let cells = Cells {
             system,
             space,

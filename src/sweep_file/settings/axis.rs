@@ -1,6 +1,7 @@
 //! How one axis is cut into cells, or carried by modes.
 
 use super::modes_of::ModesOf;
+use crate::density::BINS_OF_A_TURN;
 use crate::space::{Axis, Grading, SpaceError};
 use crate::sweep_file::draft::{MethodKind, Modes};
 
@@ -36,12 +37,20 @@ impl AxisSettings {
         self.modes.filter(|_| method.takes_modes())
     }
 
+    /// Whether it is cut into cells whose number can be given: all over a turn that is counted by trajectories are even.
+    pub fn is_cut(&self, method: MethodKind) -> bool {
+        self.modes_by(method).is_none() && self.series != ModesOf::Turn
+    }
+
     /// The axis as a method uses it; `None` where something is left to the program.
     pub(super) fn axis(&self, method: MethodKind) -> Option<Result<Axis, SpaceError>> {
         let (from, to) = self.range?;
         match self.modes_by(method) {
             Some(Modes::Auto) => return None,
             Some(Modes::Number(count)) => return Some(self.series.axis((from, to), count)),
+            None if self.series == ModesOf::Turn => {
+                return Some(Axis::turn(from, to, BINS_OF_A_TURN));
+            }
             None => {}
         }
         let count = self.count?;

@@ -52,7 +52,7 @@ pub(super) fn warn_of_idle_grade(
     reader.warn(found);
 }
 
-/// Reports axes that close on themselves where the chosen method follows trajectories, which would leave the turn.
+/// Reports axes that close on themselves where the chosen method maps cells.
 pub(super) fn refuse_turns(
     reader: &mut Reader<'_>,
     draft: &Draft,
@@ -62,7 +62,7 @@ pub(super) fn refuse_turns(
     let method = draft.method.kind;
     let turn = (0..model.axes.len()).find(|&axis| along.turn(axis).is_some());
     let axis = match turn {
-        Some(axis) if !method.takes_modes() => &model.axes[axis].name,
+        Some(axis) if method == MethodKind::Sgcm => &model.axes[axis].name,
         _ => return Some(()),
     };
     let title = format!(
@@ -70,7 +70,7 @@ pub(super) fn refuse_turns(
         method.name()
     );
     let found = Diagnostic::new(title).remedy(
-        "use `method.kind = \"generator\"`: angles, and the phase of a forcing, are carried by harmonics there",
+        "use `method.kind = \"generator\"`, where harmonics carry angles and the phase of a forcing, or \"monte-carlo\", whose trajectories go round",
     );
     reader.report(match reader.place(&["method", "kind"]) {
         Some(place) => found.at(place, "not for this system"),

@@ -82,6 +82,25 @@ points = 3
 "#;
 
 #[test]
+fn even_phases_are_watched_together() {
+    let text = ANGLE.replace("w - sin(2 pi phi)", "-phi + w cos(t)");
+    let text = text.replace("phi = { period = 1.0 }", "");
+    let spec = parse(&text, &["detect.marginals=[\"phi @ 4 phases\", \"phi\"]"]).unwrap();
+    let names: Vec<&str> = spec.family.averages().collect();
+    let phases = [
+        "phi_phase_0",
+        "phi_phase_1_4",
+        "phi_phase_1_2",
+        "phi_phase_3_4",
+    ];
+    assert_eq!(names, [&["phi"][..], &phases].concat());
+    assert_eq!(spec.observables.len(), 5);
+    let refused = parse(&text, &["detect.marginals=[\"phi @ 65 phases\"]"]);
+    let words = refused.map(drop).unwrap_err().to_string();
+    assert!(words.contains("up to 64"), "{words}");
+}
+
+#[test]
 fn what_closes_on_itself_is_an_angle_of_harmonics() {
     let read = |sets: &[&str]| parse(ANGLE, sets);
     let spec = read(&[]).unwrap();
@@ -92,6 +111,11 @@ fn what_closes_on_itself_is_an_angle_of_harmonics() {
     assert!(names.is_empty(), "{names:?}");
     let again = parse(&spec.to_toml(), &[]).unwrap();
     assert_eq!(again.axes, spec.axes);
+    // Trajectories go round, and are counted in bins of a turn whose number is not asked for.
+    let counted = read(&["method.kind=monte-carlo"]).unwrap();
+    assert!(!counted.axes[0].is_cut(counted.method.kind) && counted.axes[0].count.is_none());
+    let again = parse(&counted.to_toml(), &[]).unwrap();
+    assert_eq!(again.axes, counted.axes);
     // In radians it is a word.
     let text = ANGLE.replace("{ period = 1.0 }", "\"periodic\"");
     let radians = text.replace("2 pi phi", "phi");
@@ -101,14 +125,13 @@ fn what_closes_on_itself_is_an_angle_of_harmonics() {
     assert!(spec.to_toml().contains("phi = \"periodic\""));
     let other = |word: &str, by: &str| radians.replace(word, by);
     #[rustfmt::skip]
-    let cases: [(String, &[&str], &[&str]); 10] = [
+    let cases: [(String, &[&str], &[&str]); 9] = [
         (text.clone(), &[], &["does not have the period", "it has"]),
         (other("sin(phi)", "phi"), &[], &["write sin(phi) or cos(phi)"]),
         (other("sin(phi)", "sgn(sin(phi))"), &[], &["jumps or bends"]),
         (ANGLE.to_owned(), &["cells.phi.count=40"], &["harmonics carry it, not cells"]),
         (ANGLE.to_owned(), &["cells.phi.from=-3", "cells.phi.to=3"], &["its range is one turn"]),
         (ANGLE.to_owned(), &["method.kind=sgcm"], &["closes on itself", "method.kind = \"generator\""]),
-        (ANGLE.to_owned(), &["method.kind=monte-carlo"], &["closes on itself", "method.kind = \"generator\""]),
         (other("phi = \"periodic\"", "psi = \"periodic\""), &[], &["psi"]),
         (other("\"periodic\"", "\"cyclic\""), &[], &["`\"periodic\"`"]),
         (ANGLE.to_owned(), &["system.bounds.phi.period=0"], &["greater than zero"]),

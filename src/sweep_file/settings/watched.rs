@@ -34,7 +34,7 @@ pub(super) fn read(
     let dimension = model.axes.len();
     let has_modes = |axis: usize| {
         let settings = axes.and_then(|axes| axes.get(axis));
-        settings.is_some_and(|axis| axis.modes_by(draft.method.kind).is_some())
+        settings.is_some_and(|axis| !axis.is_cut(draft.method.kind))
     };
     // What closes on itself is looked at, but for the phase of a forcing, in which nothing has a shape.
     let is_turn = |axis: usize| {
@@ -50,7 +50,13 @@ pub(super) fn read(
     match &draft.marginals {
         Some(texts) => {
             let items = reader.items(&["detect", "marginals"]);
-            for (text, item) in texts.iter().zip(items) {
+            let each = texts.iter().zip(items);
+            let each = each.flat_map(|(text, item)| {
+                let spread = spread_over_period(text);
+                spread.into_iter().map(move |text| (text, item))
+            });
+            for (text, item) in each {
+                let text = text.as_str();
                 if let Some(axis) = coordinate(reader, model, &mut given, text, &item.place) {
                     let marginal = Observable::Marginal(axis);
                     watch(reader, &mut observables, marginal, &item.place);
@@ -310,7 +316,7 @@ fn moment(
         (Some(axis), ..) if when == "mean" => return Some(axis),
         (Some(_), _, None) => refused(
             format!("`{}` is no phase", quotable(when)),
-            "write `phase` and a part of the period from 0 to below 1, as `x @ phase 0` or `x @ phase 1/4`; or `mean`",
+            "write `phase` and a part of the period from 0 to below 1, as `x @ phase 0` or `x @ phase 1/4`; `x @ 16 phases` for even ones, up to 64; or `mean`",
         ),
         (Some(axis), _, Some(phase)) => {
             let quantity = Quantity::at_phase(model, AtPhase { axis, phase })?;
@@ -331,6 +337,27 @@ fn moment(
     };
     reader.report(found);
     None
+}
+
+/// Most even parts of a period whose phases can be watched together.
+const MOST_PHASES: usize = 64;
+
+/// The phases that `x @ 8 phases` stands for; any other text by itself.
+fn spread_over_period(text: &str) -> Vec<String> {
+    let count = |text: &str| {
+        let (axis, when) = text.split_once('@')?;
+        let count = when.trim().strip_suffix("phases")?.trim();
+        Some((axis.trim().to_owned(), count.parse::<usize>().ok()?))
+    };
+    match count(text) {
+        Some((axis, count)) if (1..=MOST_PHASES).contains(&count) => {
+            let phases = 0..count;
+            phases
+                .map(|part| format!("{axis} @ phase {part}/{count}"))
+                .collect()
+        }
+        _ => vec![text.to_owned()],
+    }
 }
 
 /// A number from 0 to below 1, as a fraction or in decimals.

@@ -1,0 +1,120 @@
+//! What trajectories tell of phases and angles: the cells that they are counted into, moments at phases, amplitudes,
+//! mean velocities and effective diffusions.
+
+use crate::continuation::Measure;
+use crate::continuation::measure::{TURN_DIFFUSION, VELOCITY};
+use crate::density::{EstimatedMoments, Moments, layout_axis};
+use crate::method::forcing::Forced;
+use crate::method::{MOST_PHASES, MethodError, Problem};
+use crate::monte_carlo::{Estimate, StepBias};
+use crate::space::{Axis, CellSpace};
+use crate::system::{AtPhase, System};
+
+/// Parts of a period at which a forced system is looked at, at least.
+const FEWEST_PARTS: usize = 32;
+
+/// Distance of a phase from a part of the period that is rounding, in parts.
+const ROUNDING: f64 = 1e-9;
+
+/// The phases that are watched.
+fn phases(problem: &Problem) -> impl Iterator<Item = AtPhase> {
+    let quantities = problem.family().quantities().iter();
+    quantities.filter_map(|quantity| quantity.phase())
+}
+
+/// Even parts of the period among which all phases are.
+fn parts_of_period(problem: &Problem) -> Result<usize, MethodError> {
+    let fits = |parts: &usize| {
+        let off = |at: AtPhase| {
+            let place = at.phase * *parts as f64;
+            (place - place.round()).abs()
+        };
+        phases(problem).all(|at| off(at) <= ROUNDING)
+    };
+    let fewest = (1..=MOST_PHASES).find(fits).ok_or(MethodError::Phases)?;
+    Ok(FEWEST_PARTS.next_multiple_of(fewest))
+}
+
+/// The problem on cells that trajectories are counted into: even ones over a turn, those along a phase each for the
+/// phase at its beginning. Other axes keep what they have.
+///
+/// # Errors
+/// [`MethodError::Phases`].
+pub(super) fn seen_at_phases(problem: &Problem) -> Result<Problem, MethodError> {
+    let space = problem.space();
+    if !space.axes().iter().any(Axis::is_closed) {
+        return Ok(problem.clone());
+    }
+    let phase = problem.family().model().phase_axis();
+    let axes = space.axes().iter().enumerate();
+    let axes = axes.map(|(index, axis)| match phase == Some(index) {
+        true => Ok(Axis::turn(
+            axis.from(),
+            axis.to(),
+            parts_of_period(problem)?,
+        )?),
+        false if axis.is_closed() => Ok(layout_axis(axis)),
+        false => Ok(axis.clone()),
+    });
+    let axes: Result<Vec<Axis>, MethodError> = axes.collect();
+    problem.on(CellSpace::new(axes?)?)
+}
+
+/// Mean and standard deviation of each axis at a phase, in the order of the phases that are watched.
+pub(super) fn at_phases(problem: &Problem, found: &Estimate) -> Vec<EstimatedMoments> {
+    let Some(periodic) = &found.periodic else {
+        return Vec::new();
+    };
+    let moments = problem.family().at_phases().map(|(at, _)| {
+        let part = (at.phase * periodic.parts() as f64).round() as usize;
+        let [mean, deviation] = periodic.moments(at.axis, part % periodic.parts());
+        let of = |mean: f64, standard_deviation: f64| Moments {
+            mean,
+            standard_deviation,
+        };
+        EstimatedMoments {
+            moments: of(mean.0, deviation.0),
+            errors: Some(of(mean.1, deviation.1)),
+        }
+    });
+    moments.collect()
+}
+
+/// Velocities and diffusions of angles, amplitudes and amplifications of states. The relative bias of the time step is
+/// a part of their errors.
+pub(super) fn rotations_and_answers(
+    problem: &Problem,
+    system: &dyn System,
+    found: &Estimate,
+    bias: Option<StepBias>,
+) -> Vec<Measure> {
+    let family = problem.family();
+    let bias = bias.map_or(0.0, |bias| bias.certain());
+    let mut measures = Vec::new();
+    for (axis, name) in family.angles() {
+        let rotation = found.rotations.iter().find(|one| one.axis == axis);
+        measures.extend(rotation.into_iter().flat_map(|rotation| {
+            let both = [
+                (VELOCITY, rotation.velocity),
+                (TURN_DIFFUSION, rotation.diffusion),
+            ];
+            both.map(|(kind, (value, error))| Measure {
+                error: Some(error + bias * value.abs()),
+                ..kind.measure(name, value)
+            })
+        }));
+    }
+    if let (Some(periodic), Some(phase)) = (&found.periodic, family.model().phase_axis()) {
+        let space = problem.space();
+        let forced = Forced {
+            system,
+            space,
+            phase,
+        };
+        measures.extend(forced.measures(family, |axis| {
+            let (amplitude, error) = periodic.amplitude(axis);
+            (amplitude, error + bias * amplitude)
+        }));
+    }
+    measures
+}
