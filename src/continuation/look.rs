@@ -1,0 +1,132 @@
+//! What a closer look has found, and how its rows take the place of those of the sweep.
+
+use super::label::{self, Label, Located};
+use super::{BifurcationStatus, Doubt, Point};
+use crate::density::Observable;
+use crate::topology::Signature;
+
+/// What is counted in an observable at a value.
+pub(super) fn counted<'p>(
+    mut points: impl Iterator<Item = &'p Point>,
+    value: f64,
+    place: usize,
+) -> Option<Signature> {
+    let point = points.find(|point| point.value == value)?;
+    Some(point.detections.get(place)?.signature)
+}
+
+/// What a closer look has found: the rows that take the place of those of the sweep in a stretch of it.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct CloserLook {
+    /// The density that was looked at.
+    pub observable: Observable,
+    /// The ends of the stretch, ascending, in units of the parameter: two values that the sweep has solved.
+    pub stretch: [f64; 2],
+    /// What the sweep counts there.
+    pub ends: [Signature; 2],
+    /// The rows between them, ascending.
+    pub rows: Vec<Located>,
+}
+
+impl CloserLook {
+    /// Whether both are of one observable and stretch.
+    pub(super) fn is_at(&self, other: &Self) -> bool {
+        (self.observable, self.stretch) == (other.observable, other.stretch)
+    }
+
+    /// Says of its rows that more cells are needed.
+    pub(super) fn doubt(&mut self) {
+        for row in &mut self.rows {
+            row.doubts.push(Doubt::CoarseCells(row.error, None));
+        }
+    }
+
+    /// Whether a row of the sweep lies in the stretch.
+    pub(super) fn holds(&self, row: &Located) -> bool {
+        let [lower, upper] = self.stretch;
+        row.observable == self.observable && (lower..=upper).contains(&row.value)
+    }
+
+    /// Takes the place of the rows of the stretch if it tells more than they do; whether it did.
+    pub(super) fn replace(&self, rows: &mut Vec<Located>) -> bool {
+        let (before, others): (Vec<Located>, Vec<Located>) =
+            rows.iter().cloned().partition(|row| self.holds(row));
+        let is_first = before.is_empty() && !self.rows.is_empty();
+        let (told, tells) = (Told::by(&before), Told::by(&self.rows));
+        let is_more = match tells {
+            Told::Located => told < tells || before.len() < self.rows.len(),
+            Told::Values => told < tells || is_first,
+            Told::Bands => false,
+        };
+        if is_more {
+            *rows = others;
+            rows.extend_from_slice(&self.rows);
+            rows.sort_by(|a, b| a.value.total_cmp(&b.value));
+        }
+        is_more
+    }
+}
+
+/// How much rows tell of what happens in a stretch.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+enum Told {
+    /// Of some only where something happens.
+    Bands,
+    /// Values of all, with errors that are larger than wanted.
+    Values,
+    Located,
+}
+
+impl Told {
+    fn by(rows: &[Located]) -> Self {
+        let is_located = |row: &Located| row.status() == BifurcationStatus::Located;
+        let has_value = |row: &Located| {
+            let reason = row.reason();
+            reason.is_none_or(|one| matches!(one, Doubt::CoarseCells(..) | Doubt::SolverError(_)))
+        };
+        if rows.iter().all(is_located) {
+            Self::Located
+        } else if rows.iter().all(has_value) {
+            Self::Values
+        } else {
+            Self::Bands
+        }
+    }
+}
+
+/// The rows of a sweep with those in the place of others that earlier looks of it have found.
+pub(super) fn with_looks(
+    labels: Vec<Label>,
+    looks: &[CloserLook],
+    (points, observables): (&[Point], &[Observable]),
+) -> Vec<Label> {
+    with_rows(labels, |rows| {
+        for look in looks {
+            let place = observables.iter().position(|one| *one == look.observable);
+            let ends = place.map(|place| {
+                look.stretch
+                    .map(|value| counted(points.iter(), value, place))
+            });
+            if ends == Some(look.ends.map(Some)) {
+                look.replace(rows);
+            }
+        }
+    })
+}
+
+/// Labelled points with their rows changed.
+pub(super) fn with_rows(labels: Vec<Label>, change: impl FnOnce(&mut Vec<Located>)) -> Vec<Label> {
+    let (mut rows, mut others) = (Vec::new(), Vec::new());
+    for label in labels {
+        match label {
+            Label::Bifurcation(row) => rows.push(*row),
+            other => others.push(other),
+        }
+    }
+    change(&mut rows);
+    let rows = rows
+        .into_iter()
+        .map(|row| Label::Bifurcation(Box::new(row)));
+    label::number(others.into_iter().chain(rows).collect())
+}
