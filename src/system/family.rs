@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::{
-    AtPhase, DampedParticle, Enclosed, ExponentMethod, FieldQuestion, FixedPointFault, Linearised, Model,
-    NoiseKind, ParameterValues, Path, Quantity, Questions, System, SystemError, Tangent,
+    AtPhase, DampedParticle, Enclosed, ExponentMethod, FieldQuestion, FixedPointFault, Linearised,
+    Model, NoiseKind, ParameterValues, Path, Quantity, Questions, System, SystemError, Tangent,
     TangentFault,
 };
 

@@ -1,6 +1,8 @@
 //! The texts of an SVG with their boxes, as another program lays them out: advances of the fonts, without pairs that
 //! move together.
 
+use std::sync::LazyLock;
+
 use roxmltree::{Document, Node};
 use ttf_parser::Face;
 
@@ -36,13 +38,26 @@ fn number(node: Node<'_, '_>, name: &str) -> Option<f64> {
 
 /// The font of a text, or of a part of it.
 fn font(is_serif: bool, is_bold: bool, is_slanted: bool) -> &'static [u8] {
+    macro_rules! file {
+        ($name:literal) => {{
+            static FONT: LazyLock<Vec<u8>> = LazyLock::new(|| {
+                let deflated = include_bytes!(concat!(
+                    "../../src/figure/canvas/fonts/DejaVu",
+                    $name,
+                    ".ttf.z"
+                ));
+                miniz_oxide::inflate::decompress_to_vec_zlib(deflated).unwrap()
+            });
+            &FONT
+        }};
+    }
     match (is_serif, is_bold, is_slanted) {
-        (false, true, _) => dejavu::sans::bold(),
-        (false, false, true) => dejavu::sans::oblique(),
-        (false, false, false) => dejavu::sans::regular(),
-        (true, true, _) => dejavu::serif::bold(),
-        (true, false, true) => dejavu::serif::italic(),
-        (true, false, false) => dejavu::serif::regular(),
+        (false, true, _) => file!("Sans-Bold"),
+        (false, false, true) => file!("Sans-Oblique"),
+        (false, false, false) => file!("Sans"),
+        (true, true, _) => file!("Serif-Bold"),
+        (true, false, true) => file!("Serif-Italic"),
+        (true, false, false) => file!("Serif"),
     }
 }
 
