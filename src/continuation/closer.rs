@@ -143,8 +143,8 @@ impl<'p, 'a> Closer<'p, 'a> {
     }
 
     /// Whether a look shows what was seen there on coarser cells, and each of its rows is nearer to the row seen then
-    /// than errors of order one allow: errors that fall by the ratio r of the cells leave d / (r - 1) after a distance d,
-    /// of which the next grid takes the share (r - 1) / r.
+    /// than errors of order one allow: errors that fall by the ratio r of the cells leave d / (r - 1) after a distance
+    /// d, of which the next grid takes the share (r - 1) / r.
     fn converges(&self, look: &CloserLook, rows: &[Located]) -> bool {
         let CellCheck::OnFinerCells { ratio } = self.work.source().subject().cell_check else {
             return false;
@@ -306,9 +306,9 @@ struct Found {
 }
 
 impl Found {
-    /// What is counted at the ends of the stretch, if that is what the sweep counts there, all in between is seen whole,
-    /// and its errors are smaller than the sweep's. Where errors are larger, what is not
-    /// counted may be there all the same.
+    /// What is counted at the ends of the stretch, if that is what the sweep counts there, all in between is seen
+    /// whole, and its errors are smaller than the sweep's. Where errors are larger, what is not counted may be there all
+    /// the same.
     fn continues(
         &self,
         points: &[&Point],

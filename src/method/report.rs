@@ -88,8 +88,8 @@ impl<'a> Reporter<'a> {
     }
 
     /// Means and standard deviations of the axes, of the quantities that are averaged, and of axes at phases of a
-    /// forcing; those of angles and of a phase, which depend on where the turn is cut, are left out. What may lie beyond
-    /// the ends of the ranges adds to their errors.
+    /// forcing; those of angles and of a phase, which depend on where the turn is cut, are left out. What may lie
+    /// beyond the ends of the ranges adds to their errors.
     pub(super) fn moments(&mut self, estimated: &[EstimatedMoments]) {
         let ends = tails::beyond(self.space(), (&self.beyond, self.leak), estimated);
         let family = self.problem.family();

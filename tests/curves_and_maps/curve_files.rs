@@ -77,7 +77,7 @@ fn a_sweep_file_names_the_curves_that_its_sweep_is_followed_by() {
         ("curve.from=0.9", outside),
         ("curve.first_to=-0.7", "goes from -0.7 to -0.7 along `h`"),
         ("curve.step=0.5", "from 0.0001 to 0.25"),
-        ("curve.rows=[\"PB7\"]", "the sweep has no P-bifurcation `PB7`"),
+        ("curve.rows=[\"PB7\"]", "the sweep has no P- or D-bifurcation `PB7`"),
         ("curve.second=a", "unknown key `curve.second`"),
         ("map.parameter=a", "a file has `[map]` or `[curve]`, not both"),
     ] {

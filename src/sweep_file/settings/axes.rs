@@ -92,7 +92,10 @@ fn read_axis(
         return Some(AxisSettings {
             range: along.and_then(|along| along.bounds(index)),
             count: None,
-            grade: Grade::Auto,
+            grade: match series {
+                ModesOf::Turn => Grade::Even,
+                _ => Grade::Auto,
+            },
             series,
             modes: None,
         });

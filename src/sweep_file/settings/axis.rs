@@ -37,7 +37,8 @@ impl AxisSettings {
         self.modes.filter(|_| method.takes_modes())
     }
 
-    /// Whether it is cut into cells whose number can be given: all over a turn that is counted by trajectories are even.
+    /// Whether it is cut into cells whose number can be given: all over a turn that is counted by trajectories are
+    /// even.
     pub fn is_cut(&self, method: MethodKind) -> bool {
         self.modes_by(method).is_none() && self.series != ModesOf::Turn
     }

@@ -14,8 +14,8 @@ pub struct Flank {
     pub value: f64,
     /// The line that it is on: 0 of a marginal and on a ray from a centre, 1 + k on a crest along the axis k.
     pub line: usize,
-    /// Whether a second scheme tells the sign of the slope, and that it has an extremum there. Where it does not, a pair
-    /// may be there or not.
+    /// Whether a second scheme tells the sign of the slope, and that it has an extremum there. Where it does not, a
+    /// pair may be there or not.
     pub is_sure: bool,
 }
 
