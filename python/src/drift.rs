@@ -118,7 +118,7 @@ fn as_floats<'py>(answer: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArrayDyn<'py
         Ok(_) => array,
         Err(_) => numpy.call_method1("asarray", (answer, "float64"))?,
     };
-    Ok(array.extract::<PyReadonlyArrayDyn<'py, f64>>()?)
+    array.extract::<PyReadonlyArrayDyn<'py, f64>>()
 }
 
 /// A system with a drift in Python.

@@ -50,7 +50,11 @@ impl Plane {
     ) -> Self {
         Self {
             sweep: Arc::clone(sweep),
-            content: StoredPlaneContent::Curves(Box::new(plane.clone()), curves, CurveOrigin::from(row)),
+            content: StoredPlaneContent::Curves(
+                Box::new(plane.clone()),
+                curves,
+                CurveOrigin::from(row),
+            ),
             plane,
             home,
             holder: None,

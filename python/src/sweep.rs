@@ -78,7 +78,7 @@ impl Sweep {
         if failure.is_some() {
             let tried = py.detach(|| verify(&sweep));
             failure.as_deref().map_or(Ok(()), Failure::raised)?;
-            tried.map_err(|words| PyValueError::new_err(words))?;
+            tried.map_err(PyValueError::new_err)?;
         }
         Ok(Self {
             inner: Arc::new(sweep),

@@ -383,7 +383,7 @@ fn what_has_no_exponent_along_its_density_is_refused_with_a_remedy() {
         ("exponent.at.x=0", "names a fixed point"),
         ("method.kind=monte-carlo", "by the generator alone"),
         ("exponent.method=trajectories system.equations.y=-x+b*y-sign(y)", "is not smooth everywhere"),
-        ("exponent.method=trajectories system.bounds.x=reflecting", "without reflecting walls"),
+        ("exponent.method=trajectories system.bounds.y=reflecting", "without reflecting walls"),
         ("system.noise.kind=ornstein-uhlenbeck system.parameters.tau=1", "formulas with white noise"),
         ("system.equations.y=-x-y+cos(b*t)", "without forcing"),
     ] {
