@@ -23,7 +23,7 @@ def test_a_curve_goes_through_the_row_that_it_was_begun_at(system: pbif.System) 
     points = curves.curves[0].points
     assert points.shape[1] == 2 and min(abs(points[:, 0] - row.value)) < 0.02
     assert len(pickle.loads(pickle.dumps(curves)).curves) == len(curves.curves)
-    with pytest.raises(pbif.InputError, match="no P-bifurcation `PB99`"):
+    with pytest.raises(pbif.InputError, match="no P- or D-bifurcation `PB99`"):
         run.curve("PB99", second="D", bounds=(0.09, 0.11))
 
 

@@ -6,7 +6,7 @@
 use super::diagnostic::{Diagnostic, Place};
 use super::document::Document;
 use super::draft::Draft;
-use super::keys::{self, KEYS, Key, KeyDefault, Kind};
+use super::keys::{self, KEYS, Key, KeyDefault, Kind, models};
 use super::names::{nearest_name, quotable};
 use super::report::Report;
 use super::value::{Entry, Plain, SpannedValue, Value};
@@ -277,6 +277,7 @@ fn suggestion(kind: Kind, node: &SpannedValue) -> Option<String> {
             }
             _ => nearest_name(plain.text()?, names()).map(str::to_owned),
         },
+        Kind::Model => nearest_name(plain.text()?, models()).map(str::to_owned),
         Kind::Width => {
             let text = plain.text()?;
             let number = text.strip_suffix("mm").map(str::trim);

@@ -123,7 +123,7 @@ impl StabilityCurve {
 /// let model = TypedModel::new("pitchfork", "Pitchfork", ["x"])
 ///     .with_equation("x", "a x - x^3")
 ///     .with_noise("x", ["b x"])
-///     .with_parameters(["a", "b"].map(Into::into))
+///     .with_parameters(["a", "b"])
 ///     .build()?;
 /// let mut family = Family::new(model, &[("b", 0.5)], Path::parameter("a", -1.0, 1.0))?;
 /// family.questions.fixed_point = Some(vec![0.0]);

@@ -5,6 +5,7 @@ use super::super::value::Plain;
 use super::field::{PERIODIC, ends_of};
 use super::in_file::AUTO;
 use crate::figure::FigureWidth;
+use crate::system::registry;
 
 /// Condition on a number, in words and as a test. Numbers are always finite.
 #[derive(Debug, Clone, Copy)]
@@ -61,6 +62,12 @@ fn is_printable(c: char) -> bool {
     matches!(c, '\t' | '\n' | '\r') || !(c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}'))
 }
 
+/// The names of built-in models.
+pub(in crate::sweep_file) fn models() -> Vec<&'static str> {
+    let models = registry::models().iter();
+    models.map(|model| model.name.as_str()).collect()
+}
+
 /// The names of widths of figures.
 fn widths() -> Vec<&'static str> {
     FigureWidth::NAMED
@@ -88,6 +95,8 @@ pub(in crate::sweep_file) enum Kind {
     Count(i128, i128),
     /// One of some strings.
     Choice(fn() -> Vec<&'static str>),
+    /// The name of a model, built in or lent to this process.
+    Model,
     /// Two strings.
     Pair,
     /// A formula: a string, or a number.
@@ -118,6 +127,7 @@ impl Kind {
                 format!("an integer from {least} to {most}, or `\"auto\"`")
             }
             Self::Choice(names) => format!("a string: {}", list(&names())),
+            Self::Model => format!("a string: {}", list(&models())),
             Self::Width => format!(
                 "a number of millimetres greater than zero, or a string: {}",
                 list(&widths())
@@ -168,6 +178,9 @@ impl Kind {
                 _ => plain.text() == Some(AUTO),
             },
             Self::Choice(names) => plain.text().is_some_and(|text| names().contains(&text)),
+            Self::Model => plain
+                .text()
+                .is_some_and(|text| registry::find(text).is_ok()),
             Self::Pair => plain.items().is_some_and(|items| {
                 items.len() == 2 && items.iter().all(|item| item.text().is_some())
             }),

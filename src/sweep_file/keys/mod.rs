@@ -11,7 +11,7 @@ mod table;
 mod tests;
 
 pub(super) use field::Field;
-pub(super) use kind::Kind;
+pub(super) use kind::{Kind, models};
 pub(super) use table::KEYS;
 
 use super::draft::{Draft, MethodKind};

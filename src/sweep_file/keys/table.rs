@@ -18,7 +18,7 @@ use crate::sampling::Integrator;
 use crate::space::MOST_MODES;
 use crate::stationary::Solver;
 use crate::sweep_file::draft::{ExponentKind, MethodKind};
-use crate::system::{ExponentMethod, FieldKind, Interpretation, NoiseKind, Sides, registry};
+use crate::system::{ExponentMethod, FieldKind, Interpretation, NoiseKind, Sides};
 
 /// Most cells an axis may have: edges are stored, so a slip of the pen must not fill the memory.
 const MOST_CELLS: i128 = 1_000_000;
@@ -47,7 +47,7 @@ use KeyDefault::{OfOptions, OfSection, Required, Rule};
 pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("title", Kind::Printable, Rule("the model's title and the swept parameter"), optional!(title),
         "Title of the run, used in tables and figures."),
-    key("system.model", Kind::Choice(models), Rule("equations of your own, in `system.equations`"), optional!(model),
+    key("system.model", Kind::Model, Rule("equations of your own, in `system.equations`"), optional!(model),
         "A built-in model; `pbif systems` lists them, `pbif systems NAME` shows one."),
     key("system.title", Kind::Printable, Rule("`title`"), optional!(equations.title),
         "Name of a system of your own, in words."),
@@ -319,9 +319,4 @@ fn switch() -> Vec<&'static str> {
 
 fn automatic() -> Vec<&'static str> {
     vec![AUTO]
-}
-
-fn models() -> Vec<&'static str> {
-    let models = registry::models().iter();
-    models.map(|model| model.name.as_str()).collect()
 }

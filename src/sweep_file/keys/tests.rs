@@ -114,6 +114,7 @@ fn example(key: &Key) -> crate::sweep_file::value::Plain {
         Kind::Step => Plain::Number(0.375),
         Kind::Width => text("slide"),
         Kind::Choice(names) => text(names().last().unwrap()),
+        Kind::Model => text(crate::sweep_file::keys::models().last().unwrap()),
         Kind::Pair => Plain::List(vec![text("x"), text("y")]),
         Kind::Formula => text("2 x"),
         Kind::Formulas => Plain::List(vec![text("sqrt(D)")]),
