@@ -307,8 +307,8 @@ struct Found {
 
 impl Found {
     /// What is counted at the ends of the stretch, if that is what the sweep counts there, all in between is seen
-    /// whole, and its errors are smaller than the sweep's. Where errors are larger, what is not counted may be there all
-    /// the same.
+    /// whole, and its errors are smaller than the sweep's. Where errors are larger, what is not counted may be there
+    /// all the same.
     fn continues(
         &self,
         points: &[&Point],
