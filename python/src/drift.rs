@@ -112,11 +112,11 @@ impl Function {
 /// Numbers as an array of 64-bit floats.
 fn as_floats<'py>(answer: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
     let numpy = PyModule::import(answer.py(), "numpy")?;
-    let array = numpy.call_method1("ascontiguousarray", (answer, "float64"))?;
-    // `ascontiguousarray` makes a number an array of one.
-    let array = match answer.getattr("shape") {
-        Ok(_) => array,
-        Err(_) => numpy.call_method1("asarray", (answer, "float64"))?,
+    let array = numpy.call_method1("asarray", (answer, "float64"))?;
+    // `ascontiguousarray` would make a number an array of one.
+    let array = match array.getattr("ndim")?.extract::<usize>()? {
+        0 => array,
+        _ => numpy.call_method1("ascontiguousarray", (array,))?,
     };
     array.extract::<PyReadonlyArrayDyn<'py, f64>>()
 }
