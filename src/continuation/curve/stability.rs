@@ -115,7 +115,7 @@ impl StabilityCurve {
 ///
 /// ```
 /// use pbif::continuation::curve::{Plane, StabilityKind, stability_curves};
-/// use pbif::system::{Family, Path, TypedModel};
+/// use pbif::system::{Family, Interpretation, Path, TypedModel};
 ///
 /// // dx = (a x - x³) dt + b x dW in Itô's sense: the exponent at rest is a - b²/2, and the density beside it goes like
 /// // the power 2a/b² - 2 of the distance.
@@ -123,6 +123,7 @@ impl StabilityCurve {
 /// let model = TypedModel::new("pitchfork", "Pitchfork", ["x"])
 ///     .with_equation("x", "a x - x^3")
 ///     .with_noise("x", ["b x"])
+///     .with_interpretation(Interpretation::Ito)
 ///     .with_parameters(["a", "b"])
 ///     .build()?;
 /// let mut family = Family::new(model, &[("b", 0.5)], Path::parameter("a", -1.0, 1.0))?;
