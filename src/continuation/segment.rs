@@ -40,7 +40,7 @@ struct Listener<'a> {
 }
 
 /// A point with the flanks of its densities.
-pub(super) struct Solved {
+pub(super) struct SolvedPoint {
     pub(super) point: Point,
     /// Those whose sign is sure.
     pub(super) flanks: Flanks,
@@ -107,7 +107,7 @@ impl<'a> Work<'a> {
         session: &mut dyn Session,
         (value, is_given): (f64, bool),
         before: Option<&Point>,
-    ) -> Result<Option<Solved>, SweepError> {
+    ) -> Result<Option<SolvedPoint>, SweepError> {
         if self.ends() {
             return Ok(None);
         }
@@ -138,7 +138,7 @@ impl<'a> Work<'a> {
         let unsure = (0..unsure.len()).filter(|&place| !unsure[place].is_empty());
         let unsure = unsure.collect();
         self.tell(&point, is_given)?;
-        Ok(Some(Solved {
+        Ok(Some(SolvedPoint {
             point,
             flanks,
             unsure,
@@ -208,12 +208,12 @@ impl<'a> Segment<'a> {
     /// Solves its given values from the middle outward, so that what is left of the first solve serves both halves, and
     /// between neighbours that differ much. The first segment is walked from where the sweep begins: a sweep that
     /// cannot begin is told early.
-    pub(super) fn walk(&mut self) -> Result<Vec<Solved>, SweepError> {
+    pub(super) fn walk(&mut self) -> Result<Vec<SolvedPoint>, SweepError> {
         let start = match self.is_first {
             true => 0,
             false => self.given.len() / 2,
         };
-        let mut solved: Vec<Solved> = Vec::with_capacity(self.given.len());
+        let mut solved: Vec<SolvedPoint> = Vec::with_capacity(self.given.len());
         let forward = (start..self.given.len()).enumerate();
         let forward = forward.map(|(step, place)| (place, step > 0));
         let backward = (0..start).rev().map(|place| (place, true));
@@ -246,12 +246,12 @@ impl<'a> Segment<'a> {
     }
 
     /// Solves between two neighbours, as far as their densities differ much.
-    pub(super) fn follow(&mut self, ends: [&Point; 2]) -> Result<Vec<Solved>, SweepError> {
+    pub(super) fn follow(&mut self, ends: [&Point; 2]) -> Result<Vec<SolvedPoint>, SweepError> {
         between(self.work, self.session.as_mut(), ends, HALVINGS)
     }
 
     /// Solves further values, one after the other.
-    pub(super) fn solve(&mut self, values: &[f64]) -> Result<Vec<Solved>, SweepError> {
+    pub(super) fn solve(&mut self, values: &[f64]) -> Result<Vec<SolvedPoint>, SweepError> {
         let solve = |&value| {
             let solved = self.work.solve(self.session.as_mut(), (value, false), None);
             solved.transpose()
@@ -266,7 +266,7 @@ fn between(
     session: &mut dyn Session,
     [a, b]: [&Point; 2],
     halvings: usize,
-) -> Result<Vec<Solved>, SweepError> {
+) -> Result<Vec<SolvedPoint>, SweepError> {
     let distance = distance_between(a, b).unwrap_or(0.0);
     let middle = 0.5 * (a.value + b.value);
     let is_wide = distance > work.largest_distance && middle != a.value && middle != b.value;

@@ -10,7 +10,7 @@ use super::grid::CheckedIndicator;
 use super::levels::asked_of;
 use super::live::Live;
 use super::locate::label_points;
-use super::segment::{Segment, Solved, Work};
+use super::segment::{Segment, SolvedPoint, Work};
 use super::span::Span;
 use super::wanted::Search;
 use super::{CellCheck, DensitySource, Goal, Label, Point, SweepError};
@@ -69,8 +69,9 @@ impl<'a> Walk<'a> {
     /// Solves the given values, and between neighbours that differ much.
     fn walk(&mut self) -> Result<(), SweepError> {
         let segments = self.segments.par_iter_mut();
-        let walked: Result<Vec<Vec<Solved>>, SweepError> = segments.map(Segment::walk).collect();
-        let mut solved: Vec<Solved> = walked?.into_iter().flatten().collect();
+        let walked: Result<Vec<Vec<SolvedPoint>>, SweepError> =
+            segments.map(Segment::walk).collect();
+        let mut solved: Vec<SolvedPoint> = walked?.into_iter().flatten().collect();
         solved.sort_by(|a, b| a.point.value.total_cmp(&b.point.value));
         for one in solved {
             self.note_unsure(&one);
@@ -96,12 +97,12 @@ impl<'a> Walk<'a> {
             Some(ends) => segment.follow(ends),
             None => Ok(Vec::new()),
         });
-        let found: Result<Vec<Vec<Solved>>, SweepError> = found.collect();
+        let found: Result<Vec<Vec<SolvedPoint>>, SweepError> = found.collect();
         self.keep(found?);
         Ok(())
     }
 
-    fn keep(&mut self, found: Vec<Vec<Solved>>) {
+    fn keep(&mut self, found: Vec<Vec<SolvedPoint>>) {
         for one in found.into_iter().flatten() {
             self.note_unsure(&one);
             let value = one.point.value;
@@ -112,7 +113,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    fn note_unsure(&mut self, solved: &Solved) {
+    fn note_unsure(&mut self, solved: &SolvedPoint) {
         let value = solved.point.value;
         self.unsure
             .extend(solved.unsure.iter().map(|&place| (place, value)));
@@ -154,7 +155,7 @@ impl<'a> Walk<'a> {
         }
         let pairs = self.segments.par_iter_mut().zip(&lists);
         let found = pairs.map(|(segment, values)| segment.solve(values));
-        let found: Result<Vec<Vec<Solved>>, SweepError> = found.collect();
+        let found: Result<Vec<Vec<SolvedPoint>>, SweepError> = found.collect();
         self.keep(found?);
         Ok(())
     }

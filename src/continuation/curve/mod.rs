@@ -35,6 +35,7 @@ mod tail;
 mod tree;
 mod walk;
 mod walked;
+mod zero_lines;
 
 pub(super) use agree::agree;
 pub use codimension::{CodimensionTwo, codimension_two};
