@@ -16,8 +16,8 @@ mod tests;
 
 use sprs::CsMat;
 
-use super::assemble::{axis_blocks, axis_fluxes, check, strides};
-use super::geometry::{AxisGeometry, End};
+use super::assemble::{axis_blocks, axis_fluxes, check};
+use super::geometry::{AxisGeometry, End, strides};
 use super::scheme::{Dissipation, REACH, Window};
 use super::{GeneratorError, GeneratorOptions};
 use crate::MAX_DIMENSION;
@@ -192,7 +192,7 @@ fn assemble_closed(
     for axis in 0..axes.len() {
         match &axes[axis].modes {
             None => {
-                let fluxes = axis_fluxes(system, &axes, &strides, axis)?;
+                let [fluxes] = axis_fluxes(system, [axes.as_slice()], &strides, axis)?;
                 assembly.cells_along(axis, &fluxes);
             }
             Some(modes) => {

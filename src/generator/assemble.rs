@@ -3,14 +3,16 @@
 //! Lines are independent of one another and so are columns: both run in parallel, and the result does not
 //! depend on how many threads there are.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
-use super::columns::{AxisRates, columns};
-use super::geometry::{AxisGeometry, End};
+use super::columns::{AxisRates, LineRates};
+use super::geometry::{AxisGeometry, End, strides};
 use super::modes::ModeAxis;
 use super::sampler::{LineSampler, quadrature_points};
 use super::scheme::{Dissipation, REACH, Window};
-use super::{Generator, GeneratorError, GeneratorOptions};
+use super::{AdvectiveScheme, Generator, GeneratorError, GeneratorOptions};
 use crate::MAX_DIMENSION;
 use crate::space::CellSpace;
 use crate::system::System;
@@ -48,11 +50,27 @@ pub(crate) fn assemble_damped(
 ) -> Result<Generator, GeneratorError> {
     check(system, space)?;
     let geometry = |axis| AxisGeometry::damped(system, axis, space, options, dissipation);
-    assemble_on(
-        (0..space.dimension()).map(geometry).collect(),
-        system,
-        space,
-    )
+    let axes = (0..space.dimension()).map(geometry).collect();
+    let [lines] = lines_by([axes], system, space)?;
+    lines.generator()
+}
+
+/// The generators by two schemes, as they are along the lines of the grid: the drift is sampled once for both, and
+/// columns are laid out of those that need them.
+///
+/// # Errors
+/// As [`assemble`].
+pub(crate) fn assemble_lines(
+    system: &dyn System,
+    space: &CellSpace,
+    schemes: [AdvectiveScheme; 2],
+) -> Result<[LineRates; 2], GeneratorError> {
+    check(system, space)?;
+    let of_scheme = |scheme| {
+        let geometry = |axis| AxisGeometry::new(system, axis, space, scheme);
+        (0..space.dimension()).map(geometry).collect()
+    };
+    lines_by(schemes.map(of_scheme), system, space)
 }
 
 /// As [`assemble`], with the walls of another system: so a derivative by a parameter that moves a wall is
@@ -65,31 +83,37 @@ pub(super) fn assemble_within(
 ) -> Result<Generator, GeneratorError> {
     check(system, space)?;
     let geometry = |axis| AxisGeometry::new(walls, axis, space, options.scheme);
-    assemble_on(
-        (0..space.dimension()).map(geometry).collect(),
-        system,
-        space,
-    )
+    let axes = (0..space.dimension()).map(geometry).collect();
+    let [lines] = lines_by([axes], system, space)?;
+    lines.generator()
 }
 
-fn assemble_on(
-    axes: Vec<AxisGeometry>,
+/// What moves along the lines of a grid, by axes whose stencils alone differ.
+fn lines_by<const N: usize>(
+    axes: [Vec<AxisGeometry>; N],
     system: &dyn System,
     space: &CellSpace,
-) -> Result<Generator, GeneratorError> {
-    for (axis, geometry) in axes.iter().enumerate() {
-        if let Some(modes) = &geometry.modes {
-            modes.check(system, axis, geometry.ends == [End::Wall; 2])?;
+) -> Result<[LineRates; N], GeneratorError> {
+    let mut all = axes.map(|axes| LineRates::new(axes, space.n_cells()));
+    for axis in 0..space.dimension() {
+        let of_axis = all.each_ref().map(|lines| lines.axes.as_slice());
+        let Some(first) = of_axis.first() else {
+            continue;
+        };
+        let strides = strides(first);
+        let found = match &first[axis].modes {
+            Some(modes) => {
+                modes.check(system, axis, first[axis].ends == [End::Wall; 2])?;
+                let blocks = Arc::new(axis_blocks(system, first, &strides, axis, modes)?);
+                [(); N].map(|()| AxisRates::Blocks(Arc::clone(&blocks)))
+            }
+            None => axis_fluxes(system, of_axis, &strides, axis)?.map(AxisRates::Fluxes),
+        };
+        for (lines, rates) in all.iter_mut().zip(found) {
+            lines.rates.push(rates);
         }
     }
-    let strides = strides(&axes);
-    let rates: Result<Vec<AxisRates>, GeneratorError> = (0..axes.len())
-        .map(|axis| match &axes[axis].modes {
-            Some(modes) => axis_blocks(system, &axes, &strides, axis, modes).map(AxisRates::Blocks),
-            None => axis_fluxes(system, &axes, &strides, axis).map(AxisRates::Fluxes),
-        })
-        .collect();
-    columns(&axes, &strides, &rates?, space.n_cells())
+    Ok(all)
 }
 
 pub(super) fn check(system: &dyn System, space: &CellSpace) -> Result<(), GeneratorError> {
@@ -111,43 +135,48 @@ pub(super) fn check(system: &dyn System, space: &CellSpace) -> Result<(), Genera
     Ok(())
 }
 
-/// Distance in cell numbers between neighbours along each axis.
-pub(super) fn strides(axes: &[AxisGeometry]) -> Vec<usize> {
-    let mut strides = vec![1; axes.len()];
-    for axis in (1..axes.len()).rev() {
-        strides[axis - 1] = strides[axis] * axes[axis].count();
-    }
-    strides
-}
-
-/// Flux weights of all lines along an axis: `lines × (count + 1)` windows. Line `outer · stride + inner` starts at
-/// cell `outer · stride · count + inner`.
-pub(super) fn axis_fluxes(
+/// Flux weights of all lines along an axis, `lines × (count + 1)` windows, by each of several axes whose stencils alone
+/// differ. Line `outer · stride + inner` starts at cell `outer · stride · count + inner`.
+pub(super) fn axis_fluxes<const N: usize>(
     system: &dyn System,
-    axes: &[AxisGeometry],
+    axes: [&[AxisGeometry]; N],
     strides: &[usize],
     axis: usize,
-) -> Result<Vec<Window>, GeneratorError> {
-    let count = axes[axis].count();
-    let cells: usize = axes.iter().map(AxisGeometry::count).product();
-    let mut fluxes = vec![[0.0; 2 * REACH]; cells / count * (count + 1)];
-    let quadrature = quadrature_points(&axes[axis]);
-    fluxes
-        .par_chunks_mut(count + 1)
-        .enumerate()
-        .try_for_each_init(
-            || LineSampler::new(system, axis),
-            |sampler, (number, fluxes)| {
-                sampler.state = line_start(axes, strides, axis, number);
-                sampler.sample(&axes[axis].nodes, &quadrature)?;
+) -> Result<[Vec<Window>; N], GeneratorError> {
+    let mut all = [(); N].map(|()| Vec::new());
+    let Some(&first) = axes.first() else {
+        return Ok(all);
+    };
+    let count = first[axis].count();
+    let cells: usize = first.iter().map(AxisGeometry::count).product();
+    let quadrature = quadrature_points(&first[axis]);
+    let lines = cells / count;
+    all.iter_mut()
+        .for_each(|fluxes| *fluxes = vec![[0.0; 2 * REACH]; lines * (count + 1)]);
+    let mut tasks: Vec<[&mut [Window]; N]> = Vec::with_capacity(lines);
+    let mut each = all.each_mut().map(|fluxes| fluxes.chunks_mut(count + 1));
+    for _ in 0..lines {
+        tasks.push(
+            each.each_mut()
+                .map(|chunks| chunks.next().unwrap_or_default()),
+        );
+    }
+    tasks.into_par_iter().enumerate().try_for_each_init(
+        || LineSampler::new(system, axis),
+        |sampler, (number, fluxes)| {
+            sampler.state = line_start(first, strides, axis, number);
+            sampler.sample(&first[axis].nodes, &quadrature)?;
+            sampler.line.prepare(&first[axis]);
+            for (axes, fluxes) in axes.iter().zip(fluxes) {
                 sampler.line.fluxes(&axes[axis], fluxes);
                 if fluxes.iter().flatten().any(|weight| !weight.is_finite()) {
                     return Err(GeneratorError::Overflow { axis });
                 }
-                Ok::<(), GeneratorError>(())
-            },
-        )?;
-    Ok(fluxes)
+            }
+            Ok::<(), GeneratorError>(())
+        },
+    )?;
+    Ok(all)
 }
 
 /// Blocks of all lines along an axis of modes: `lines × count × count` rates, the line's number as in [`axis_fluxes`].
@@ -232,6 +261,32 @@ mod tests {
                 assert!(generator.escape[cell] >= 0.0);
             }
             assert!(generator.escape.iter().sum::<f64>() > 0.0);
+        }
+    }
+
+    #[test]
+    fn lines_by_two_schemes_are_those_of_each_and_their_products_those_of_the_matrices() {
+        let (x, y) = (space().axes()[0].clone(), space().axes()[1].clone());
+        let modes = CellSpace::new(vec![x, y, Axis::modes(-0.5, 0.5, 4).unwrap()]).unwrap();
+        let schemes = [AdvectiveScheme::Upwind5, AdvectiveScheme::Central4];
+        for space in [space(), modes] {
+            let both = assemble_lines(&*dahl(), &space, schemes).unwrap();
+            for (scheme, lines) in schemes.into_iter().zip(both) {
+                let generator = assemble(&*dahl(), &space, &GeneratorOptions { scheme }).unwrap();
+                let same = lines.generator().unwrap();
+                assert_eq!(same.matrix, generator.matrix);
+                assert_eq!(same.escape, generator.escape);
+                let x: Vec<f64> = (0..space.n_cells())
+                    .map(|cell| (cell as f64).sin())
+                    .collect();
+                let mut product = vec![0.0; x.len()];
+                for (column, weight) in generator.matrix.outer_iterator().zip(&x) {
+                    for (row, rate) in column.iter() {
+                        product[row] += rate * weight;
+                    }
+                }
+                assert_eq!(lines.product(&x), product);
+            }
         }
     }
 

@@ -1,9 +1,11 @@
 //! The columns of the generator from the fluxes of the grid lines.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 use sprs::CsMat;
 
-use super::geometry::AxisGeometry;
+use super::geometry::{AxisGeometry, strides};
 use super::scheme::{REACH, Window};
 use super::{Generator, GeneratorError};
 use crate::MAX_DIMENSION;
@@ -16,86 +18,117 @@ pub(super) enum AxisRates {
     /// Weights of the flux through every face: `lines × (count + 1)`.
     Fluxes(Vec<Window>),
     /// Rates between all nodes of an axis of modes: `lines × count × count`, from the one (slow) into the other (fast).
-    Blocks(Vec<f64>),
+    Blocks(Arc<Vec<f64>>),
 }
 
-/// Everything a column needs.
-struct Columns<'a> {
-    axes: &'a [AxisGeometry],
-    strides: &'a [usize],
-    rates: &'a [AxisRates],
+/// A generator before its columns are laid out: what moves along the lines of every axis.
+pub(crate) struct LineRates {
+    pub(super) axes: Vec<AxisGeometry>,
+    strides: Vec<usize>,
+    /// One an axis.
+    pub(super) rates: Vec<AxisRates>,
+    cells: usize,
 }
 
-/// Fills the matrix from the fluxes of all lines along every axis.
-pub(super) fn columns(
-    axes: &[AxisGeometry],
-    strides: &[usize],
-    rates: &[AxisRates],
-    n_cells: usize,
-) -> Result<Generator, GeneratorError> {
-    let columns = Columns {
-        axes,
-        strides,
-        rates,
-    };
-    let mut starts = Vec::with_capacity(n_cells + 1);
-    starts.push(0);
-    let mut total = 0;
-    let mut place = columns.place(0);
-    for _ in 0..n_cells {
-        total += columns.entries(&place);
-        starts.push(total);
-        columns.step(&mut place);
+impl LineRates {
+    /// Of axes along which nothing moves yet.
+    pub(super) fn new(axes: Vec<AxisGeometry>, cells: usize) -> Self {
+        Self {
+            strides: strides(&axes),
+            rates: Vec::with_capacity(axes.len()),
+            axes,
+            cells,
+        }
     }
-    let mut rows = vec![0_usize; total];
-    let mut values = vec![0.0; total];
-    let mut escape = vec![0.0; n_cells];
-    let mut tasks = Vec::new();
-    let (mut rest_rows, mut rest_values) = (rows.as_mut_slice(), values.as_mut_slice());
-    for (chunk, escape) in escape.chunks_mut(COLUMNS).enumerate() {
-        let first = chunk * COLUMNS;
-        let length = starts[first + escape.len()] - starts[first];
-        let (row, later_rows) = rest_rows.split_at_mut(length);
-        let (value, later_values) = rest_values.split_at_mut(length);
-        (rest_rows, rest_values) = (later_rows, later_values);
-        tasks.push((first, row, value, escape));
+
+    /// The matrix and the escape.
+    ///
+    /// # Errors
+    /// [`GeneratorError::Structure`].
+    pub(crate) fn generator(&self) -> Result<Generator, GeneratorError> {
+        let n_cells = self.cells;
+        let mut starts = Vec::with_capacity(n_cells + 1);
+        starts.push(0);
+        let mut total = 0;
+        let mut place = self.place(0);
+        for _ in 0..n_cells {
+            total += self.entries(&place);
+            starts.push(total);
+            self.step(&mut place);
+        }
+        let mut rows = vec![0_usize; total];
+        let mut values = vec![0.0; total];
+        let mut escape = vec![0.0; n_cells];
+        let mut tasks = Vec::new();
+        let (mut rest_rows, mut rest_values) = (rows.as_mut_slice(), values.as_mut_slice());
+        for (chunk, escape) in escape.chunks_mut(COLUMNS).enumerate() {
+            let first = chunk * COLUMNS;
+            let length = starts[first + escape.len()] - starts[first];
+            let (row, later_rows) = rest_rows.split_at_mut(length);
+            let (value, later_values) = rest_values.split_at_mut(length);
+            (rest_rows, rest_values) = (later_rows, later_values);
+            tasks.push((first, row, value, escape));
+        }
+        tasks
+            .into_par_iter()
+            .for_each(|(first, mut rows, mut values, escape)| {
+                let mut place = self.place(first);
+                for (offset, escape) in escape.iter_mut().enumerate() {
+                    let (row, later_rows) = rows.split_at_mut(self.entries(&place));
+                    let (value, later_values) = values.split_at_mut(row.len());
+                    (rows, values) = (later_rows, later_values);
+                    *escape = self.fill(first + offset, &place, row, value);
+                    self.step(&mut place);
+                }
+            });
+        let matrix = CsMat::try_new_csc((n_cells, n_cells), starts, rows, values);
+        let matrix = matrix.map_err(|(_, _, _, error)| GeneratorError::Structure {
+            n_cells,
+            reason: error.to_string(),
+        })?;
+        Ok(Generator { matrix, escape })
     }
-    tasks
-        .into_par_iter()
-        .for_each(|(first, mut rows, mut values, escape)| {
-            let mut place = columns.place(first);
-            for (offset, escape) in escape.iter_mut().enumerate() {
-                let (row, later_rows) = rows.split_at_mut(columns.entries(&place));
-                let (value, later_values) = values.split_at_mut(row.len());
-                (rows, values) = (later_rows, later_values);
-                *escape = columns.fill(first + offset, &place, row, value);
-                columns.step(&mut place);
+
+    /// Q x, summed as by the columns of the matrix, to the bit.
+    pub(crate) fn product(&self, x: &[f64]) -> Vec<f64> {
+        let most = self
+            .axes
+            .iter()
+            .map(|axis| axis.count().min(2 * axis.reach + 1));
+        let most = 1 + most.sum::<usize>();
+        let (mut rows, mut values) = (vec![0_usize; most], vec![0.0; most]);
+        let mut product = vec![0.0; x.len()];
+        let mut place = self.place(0);
+        for (cell, weight) in x.iter().enumerate() {
+            let entries = self.entries(&place);
+            let (rows, values) = (&mut rows[..entries], &mut values[..entries]);
+            self.fill(cell, &place, rows, values);
+            for (&row, value) in rows.iter().zip(&*values) {
+                product[row] += value * weight;
             }
-        });
-    let matrix = CsMat::try_new_csc((n_cells, n_cells), starts, rows, values);
-    let matrix = matrix.map_err(|(_, _, _, error)| GeneratorError::Structure {
-        n_cells,
-        reason: error.to_string(),
-    })?;
-    Ok(Generator { matrix, escape })
+            self.step(&mut place);
+        }
+        product
+    }
 }
 
 /// Positions of a cell along all axes.
 type Coordinates = [usize; MAX_DIMENSION];
 
-impl Columns<'_> {
+impl LineRates {
     /// The place of a cell.
     fn place(&self, cell: usize) -> Coordinates {
         let mut place = [0; MAX_DIMENSION];
-        for ((position, geometry), stride) in place.iter_mut().zip(self.axes).zip(self.strides) {
+        let axes = self.axes.iter().zip(&self.strides);
+        for (position, (geometry, stride)) in place.iter_mut().zip(axes) {
             *position = cell / stride % geometry.count();
         }
         place
     }
 
-    /// Goes on to the next cell, without the divisions of [`Columns::place`].
+    /// Goes on to the next cell, without the divisions of [`LineRates::place`].
     fn step(&self, place: &mut Coordinates) {
-        for (position, geometry) in place.iter_mut().zip(self.axes).rev() {
+        for (position, geometry) in place.iter_mut().zip(&self.axes).rev() {
             *position += 1;
             if *position < geometry.count() {
                 return;
@@ -175,7 +208,12 @@ impl Columns<'_> {
             let index = (position + REACH).wrapping_sub(face);
             faces[face].get(index).copied().unwrap_or(0.0)
         };
-        positions.for_each(|to| tell(to, weight(to) - weight(to + 1)));
+        let mut lower = weight(positions.start);
+        for to in positions {
+            let upper = weight(to + 1);
+            tell(to, lower - upper);
+            lower = upper;
+        }
         weight(count) - weight(0)
     }
 }

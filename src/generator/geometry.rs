@@ -106,6 +106,15 @@ impl AxisGeometry {
     }
 }
 
+/// Distance in cell numbers between neighbours along each axis.
+pub(super) fn strides(axes: &[AxisGeometry]) -> Vec<usize> {
+    let mut strides = vec![1; axes.len()];
+    for axis in (1..axes.len()).rev() {
+        strides[axis - 1] = strides[axis] * axes[axis].count();
+    }
+    strides
+}
+
 /// Inner faces of an axis on which a switching surface of the system lies.
 pub(super) fn surface_faces(system: &dyn System, index: usize, axis: &Axis) -> Vec<usize> {
     let surfaces = system.facts().surfaces_on(index);

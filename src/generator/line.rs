@@ -57,24 +57,32 @@ fn fitted_rate(rest: f64, diffusion: f64, width: f64) -> f64 {
 }
 
 impl Line {
-    /// Writes the weights of the flux toward larger coordinates through each face: `fluxes[face][k]` multiplies
-    /// the unknown of cell `face + k - 3`. At an open end the flux is what leaves, never what comes in.
-    pub(super) fn fluxes(&mut self, axis: &AxisGeometry, fluxes: &mut [Window]) {
-        let noisy = !self.diffusion.is_empty();
+    /// Makes of the samples what the fluxes of all schemes share.
+    pub(super) fn prepare(&mut self, axis: &AxisGeometry) {
         self.speed.clear();
-        if noisy {
+        if self.is_noisy() {
             self.split(axis);
             self.damp(axis);
+            self.gradients(axis);
         } else {
             self.advected.clone_from(&self.drift);
             self.speed
                 .extend(self.drift.iter().map(|drift| drift.abs()));
         }
+    }
+
+    fn is_noisy(&self) -> bool {
+        !self.diffusion.is_empty()
+    }
+
+    /// Writes the weights of the flux toward larger coordinates through each face: `fluxes[face][k]` multiplies
+    /// the unknown of cell `face + k - 3`. At an open end the flux is what leaves, never what comes in. The line has
+    /// been prepared with the same axis, or one of another advective scheme.
+    pub(super) fn fluxes(&self, axis: &AxisGeometry, fluxes: &mut [Window]) {
         for (face, flux) in fluxes.iter_mut().enumerate() {
             *flux = self.advective(axis, face);
         }
-        if noisy {
-            self.gradients(axis);
+        if self.is_noisy() {
             for (face, flux) in fluxes.iter_mut().enumerate() {
                 self.add_fitted(axis, face, flux);
             }

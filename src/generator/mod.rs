@@ -49,7 +49,8 @@ pub(crate) use absorbing::{
     assemble_with_border_change, lagrange, levels,
 };
 pub use assemble::assemble;
-pub(crate) use assemble::assemble_damped;
+pub(crate) use assemble::{assemble_damped, assemble_lines};
+pub(crate) use columns::LineRates;
 pub use derivative::assemble_derivative;
 pub use grading::automatic_grading;
 pub(crate) use masses::summed_to_walls;

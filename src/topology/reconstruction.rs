@@ -63,8 +63,9 @@ pub(super) fn interpolating(
         return None;
     }
     let edges = &axis.edges()[cells.start..=cells.end];
+    let nodes = edges.len();
     let of_primitive = differentiation_weights(edges, at, orders);
-    let line = |weights: &Vec<f64>| {
+    let line = |weights: &[f64]| {
         // Σ_i w_i F(edge i) with F = Σ of average × width below: cell j has all weights above it.
         let mut above = 0.0;
         let mut line = vec![0.0; cells.len()];
@@ -77,7 +78,7 @@ pub(super) fn interpolating(
             weights: line,
         }
     };
-    Some(of_primitive[1..].iter().map(line).collect())
+    Some(of_primitive[nodes..].chunks(nodes).map(line).collect())
 }
 
 /// Lines as of [`interpolating`] for the polynomial of the given degree nearest to the averages over many cells.
@@ -114,12 +115,12 @@ pub(super) fn smoothing(
     Some(lines)
 }
 
-/// Weights of function values at `nodes` for the value and the first `orders` derivatives at a point
-/// (Fornberg 1988, *Math. Comp.* 51, 699).
-fn differentiation_weights(nodes: &[f64], at: f64, orders: usize) -> Vec<Vec<f64>> {
+/// Weights of function values at `nodes` for the value and the first `orders` derivatives at a point, one row of
+/// weights after the other (Fornberg 1988, *Math. Comp.* 51, 699).
+fn differentiation_weights(nodes: &[f64], at: f64, orders: usize) -> Vec<f64> {
     let n = nodes.len();
-    let mut weights = vec![vec![0.0; n]; orders + 1];
-    weights[0][0] = 1.0;
+    let mut weights = vec![0.0; (orders + 1) * n];
+    weights[0] = 1.0;
     let mut product = 1.0;
     let mut offset = nodes[0] - at;
     for i in 1..n {
@@ -133,20 +134,21 @@ fn differentiation_weights(nodes: &[f64], at: f64, orders: usize) -> Vec<Vec<f64
             if j + 1 == i {
                 for k in (0..=top).rev() {
                     let lower = if k > 0 {
-                        k as f64 * weights[k - 1][i - 1]
+                        k as f64 * weights[(k - 1) * n + i - 1]
                     } else {
                         0.0
                     };
-                    weights[k][i] = product * (lower - previous * weights[k][i - 1]) / next;
+                    weights[k * n + i] =
+                        product * (lower - previous * weights[k * n + i - 1]) / next;
                 }
             }
             for k in (0..=top).rev() {
                 let lower = if k > 0 {
-                    k as f64 * weights[k - 1][j]
+                    k as f64 * weights[(k - 1) * n + j]
                 } else {
                     0.0
                 };
-                weights[k][j] = (offset * weights[k][j] - lower) / gap;
+                weights[k * n + j] = (offset * weights[k * n + j] - lower) / gap;
             }
         }
         product = next;

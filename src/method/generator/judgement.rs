@@ -140,12 +140,15 @@ impl GeneratorSession {
             return Ok(Vec::new());
         };
         let mut found = Vec::new();
-        let mut first = None;
+        let mut both = None;
         for angle in problem.family().angles() {
             let system = solved.system.as_ref();
-            let first = match &mut first {
-                Some(first) => first,
-                None => first.insert(self.source.assemble(system, self.source.options.scheme)?),
+            let (first, second) = match &mut both {
+                Some(both) => both,
+                None => both.insert((
+                    self.source.assemble(system, self.source.options.scheme)?,
+                    (second.generator()).map_err(|error| self.source.refused(error))?,
+                )),
             };
             let steady = Steady {
                 system,
@@ -219,7 +222,7 @@ impl GeneratorSession {
             (Some(second), along) => {
                 let expected = along.as_ref().map(|(change, _)| change.as_slice());
                 let solver = &mut self.solver;
-                solver.sensitivity_within(&second.matrix, unknowns, expected, ROUGH)?
+                solver.response(&second.product(unknowns), unknowns, expected, ROUGH)?
             }
             (None, _) => vec![0.0; unknowns.len()],
         };

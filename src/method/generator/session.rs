@@ -22,7 +22,7 @@ use super::unknowns::distance;
 use crate::cancellation::Cancellation;
 use crate::continuation::{Solution, SolveReport};
 use crate::density::EstimatedDensity;
-use crate::generator::Generator;
+use crate::generator::LineRates;
 use crate::method::MethodError;
 use crate::method::neighbours::Neighbours;
 use crate::method::watched::planes;
@@ -63,7 +63,7 @@ pub(super) struct PointSolve {
     /// Rates at which the cells' masses leave Ω.
     pub(super) escape: Vec<f64>,
     /// The generator by the second scheme; `None` in a check, which states no error of its own.
-    pub(super) second: Option<Generator>,
+    pub(super) second: Option<LineRates>,
     /// By how much the second scheme's unknowns differ, where that came along with the solve, and whether the unknowns
     /// were expected well enough for that to be it.
     pub(super) along: Option<(Vec<f64>, bool)>,
@@ -208,17 +208,20 @@ impl GeneratorSession {
         expected: Option<&[f64]>,
     ) -> Result<PointSolve, MethodError> {
         let (source, solver) = (&self.source, &mut self.solver);
-        let (generator, second) = rayon::join(
-            || source.assemble(system.as_ref(), source.options.scheme),
-            || {
-                let wanted = (!source.checks).then(|| companion(source.options.scheme));
-                let second = wanted.map(|scheme| source.assemble(system.as_ref(), scheme));
-                second.transpose()
-            },
-        );
-        let (generator, second) = (generator?, second?);
-        let along = second.as_ref().map(|second| Along {
-            derivative: &second.matrix,
+        let scheme = source.options.scheme;
+        let (generator, second) = if source.checks {
+            (source.assemble(system.as_ref(), scheme)?, None)
+        } else {
+            let schemes = [scheme, companion(scheme)];
+            let [first, second] = source.assemble_lines(system.as_ref(), schemes)?;
+            let generator = first.generator().map_err(|error| source.refused(error))?;
+            (generator, Some(second))
+        };
+        // What the second scheme says of a steady state of the first is what they differ by.
+        let change = second.as_ref().zip(guess);
+        let change = change.map(|(second, guess)| second.product(guess));
+        let along = change.as_ref().map(|change| Along {
+            change,
             expected,
             tolerance: ROUGH,
         });

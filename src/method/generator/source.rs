@@ -6,7 +6,10 @@ use super::GeneratorMethodOptions;
 use super::options::{finer_axes, finer_factor};
 use crate::cancellation::Cancellation;
 use crate::continuation::Want;
-use crate::generator::{AdvectiveScheme, Generator, GeneratorError, GeneratorOptions, assemble};
+use crate::generator::{
+    AdvectiveScheme, Generator, GeneratorError, GeneratorOptions, LineRates, assemble,
+    assemble_lines,
+};
 use crate::method::problem::Maps;
 use crate::method::structure::{all_kinked_surfaces, closed_ends};
 use crate::method::watched::Masses;
@@ -125,6 +128,16 @@ impl GeneratorSource {
     ) -> Result<Generator, MethodError> {
         let options = GeneratorOptions { scheme };
         assemble(system, self.problem.space(), &options).map_err(|error| self.refused(error))
+    }
+
+    /// The generators of a system by two schemes, along the lines of the grid.
+    pub(super) fn assemble_lines(
+        &self,
+        system: &dyn System,
+        schemes: [AdvectiveScheme; 2],
+    ) -> Result<[LineRates; 2], MethodError> {
+        let lines = assemble_lines(system, self.problem.space(), schemes);
+        lines.map_err(|error| self.refused(error))
     }
 
     /// What could not be assembled, with the names of the axes.

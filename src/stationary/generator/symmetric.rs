@@ -107,12 +107,10 @@ impl RateSolver {
         along: Option<&Along<'_>>,
     ) -> Result<(RateSteadyState, Option<Vec<f64>>), RateError> {
         self.folded = None;
-        let change = match (along, guess) {
-            (Some(along), Some(guess)) => Some(self.plain.change(along.derivative, guess)?),
-            _ => None,
-        };
-        let question = along.zip(change.as_deref());
-        let question = question.map(|(along, change)| along.question(change));
+        let question = along.filter(|_| guess.is_some()).map(Along::question);
+        if let (Some(question), Some(guess)) = (&question, guess) {
+            self.plain.shapes(question, guess)?;
+        }
         if self.space.n_cells() < worth_folding(&self.space) || !is_centrosymmetric(matrix, escape)
         {
             return self.plain.solve_along(matrix, escape, guess, question);

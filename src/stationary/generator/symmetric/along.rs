@@ -1,15 +1,13 @@
 //! Questions to a solve, and what they become on half of the cells.
 
-use sprs::CsMat;
-
 use super::folding::Folding;
 use crate::stationary::generator::question::Question;
 
 /// A change of the generator whose effect on the steady state is wanted along with a solve.
 #[derive(Debug, Clone, Copy)]
 pub struct Along<'a> {
-    /// dQ, of the generator's size (CSC, any pattern).
-    pub derivative: &'a CsMat<f64>,
+    /// By how much more mass enters each cell, dQ times the masses of the guess.
+    pub change: &'a [f64],
     /// The answer that is expected, Σ = 0.
     pub expected: Option<&'a [f64]>,
     /// Relative error of the answer in L1.
@@ -17,9 +15,9 @@ pub struct Along<'a> {
 }
 
 impl<'a> Along<'a> {
-    pub(super) fn question(&self, change: &'a [f64]) -> Question<'a> {
+    pub(super) fn question(&self) -> Question<'a> {
         Question {
-            change,
+            change: self.change,
             guess: self.expected,
             tolerance: self.tolerance,
         }
