@@ -287,7 +287,9 @@ fn integrators(system: &dyn System) -> Result<(), AnyError> {
         })?;
         let taken = match integrator {
             Integrator::EulerMaruyama => run.transitions.time_step(),
-            Integrator::StochasticHeun => run.transitions.time_step().powi(3) / 4.0,
+            Integrator::StochasticHeun | Integrator::WeakHeun => {
+                run.transitions.time_step().powi(3) / 4.0
+            }
         };
         print!("| {} | {time_step:.4} | {taken:.1e} | ", integrator.name());
         match &run.steady {

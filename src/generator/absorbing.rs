@@ -16,8 +16,9 @@ mod tests;
 
 use sprs::CsMat;
 
-use super::assemble::{axis_blocks, axis_fluxes, check};
-use super::geometry::{AxisGeometry, End, strides};
+use super::assemble::{check, lines_by};
+use super::columns::{AxisRates, LineRates};
+use super::geometry::{AxisGeometry, strides};
 use super::scheme::{Dissipation, REACH, Window};
 use super::{GeneratorError, GeneratorOptions};
 use crate::MAX_DIMENSION;
@@ -136,49 +137,61 @@ pub(crate) fn assemble_absorbing(
     options: &GeneratorOptions,
     (dissipation, closure): (Dissipation, Closure),
 ) -> Result<AbsorbingGenerator, GeneratorError> {
-    let closed = assemble_closed(
-        system,
-        space,
-        level,
-        options,
-        (dissipation, &[closure.cells()]),
-    );
-    Ok(closed?.0)
+    let [lines] = lines(system, space, options, [dissipation])?;
+    Ok(closed((system, space), level, &lines, &[closure.cells()])?.0)
 }
 
-/// The same with [`Closure::Fourth`], and what [`Closure::Third`] changes.
+/// The same with all of the dissipation and [`Closure::Fourth`], what [`Closure::Third`] changes of it, and with half of
+/// the dissipation. The drift is sampled once for all.
 ///
 /// # Errors
 /// As [`assemble_absorbing`].
-pub(crate) fn assemble_with_border_change(
+pub(crate) fn assemble_with_changes(
     system: &dyn System,
     space: &CellSpace,
     level: &BoundQuantity,
     options: &GeneratorOptions,
-    dissipation: Dissipation,
-) -> Result<(AbsorbingGenerator, RateChange), GeneratorError> {
+) -> Result<(AbsorbingGenerator, RateChange, AbsorbingGenerator), GeneratorError> {
     let both = [Closure::Fourth, Closure::Third].map(Closure::cells);
-    assemble_closed(system, space, level, options, (dissipation, &both))
+    let shares = [Dissipation::Full, Dissipation::Half];
+    let [full, half] = lines(system, space, options, shares)?;
+    let (full, half) = rayon::join(
+        || closed((system, space), level, &full, &both),
+        || closed((system, space), level, &half, &both[..1]),
+    );
+    let ((full, border), (half, _)) = (full?, half?);
+    Ok((full, border, half))
+}
+
+/// What moves along the lines of the grid, with shares of the dissipation.
+fn lines<const N: usize>(
+    system: &dyn System,
+    space: &CellSpace,
+    options: &GeneratorOptions,
+    shares: [Dissipation; N],
+) -> Result<[LineRates; N], GeneratorError> {
+    check(system, space)?;
+    let axes = shares.map(|share| {
+        let geometry = |axis| AxisGeometry::damped(system, axis, space, options, share);
+        (0..space.dimension()).map(geometry).collect()
+    });
+    lines_by(axes, system, space)
 }
 
 /// The generator whose stencils go on past the border by the first number of cells, and what the second one changes.
-fn assemble_closed(
-    system: &dyn System,
-    space: &CellSpace,
+fn closed(
+    (system, space): (&dyn System, &CellSpace),
     level: &BoundQuantity,
-    options: &GeneratorOptions,
-    (dissipation, cells): (Dissipation, &[usize]),
+    lines: &LineRates,
+    cells: &[usize],
 ) -> Result<(AbsorbingGenerator, RateChange), GeneratorError> {
-    check(system, space)?;
-    let geometry = |axis| AxisGeometry::damped(system, axis, space, options, dissipation);
-    let axes: Vec<AxisGeometry> = (0..space.dimension()).map(geometry).collect();
-    let strides = strides(&axes);
+    let axes = &lines.axes;
     let border = Border {
         system,
         space,
         level,
-        axes: &axes,
-        strides: &strides,
+        axes,
+        strides: &strides(axes),
         cells,
         levels: levels(space, level)?,
     };
@@ -189,17 +202,10 @@ fn assemble_closed(
         change: RateChange::new(space.n_cells(), 0),
         border,
     };
-    for axis in 0..axes.len() {
-        match &axes[axis].modes {
-            None => {
-                let [fluxes] = axis_fluxes(system, [axes.as_slice()], &strides, axis)?;
-                assembly.cells_along(axis, &fluxes);
-            }
-            Some(modes) => {
-                modes.check(system, axis, axes[axis].ends == [End::Wall; 2])?;
-                let blocks = axis_blocks(system, &axes, &strides, axis, modes)?;
-                assembly.modes_along(axis, &blocks);
-            }
+    for (axis, rates) in lines.rates.iter().enumerate() {
+        match rates {
+            AxisRates::Fluxes(fluxes) => assembly.cells_along(axis, fluxes),
+            AxisRates::Blocks(blocks) => assembly.modes_along(axis, blocks),
         }
     }
     assembly.generator()

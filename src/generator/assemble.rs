@@ -89,7 +89,7 @@ pub(super) fn assemble_within(
 }
 
 /// What moves along the lines of a grid, by axes whose stencils alone differ.
-fn lines_by<const N: usize>(
+pub(super) fn lines_by<const N: usize>(
     axes: [Vec<AxisGeometry>; N],
     system: &dyn System,
     space: &CellSpace,
@@ -137,7 +137,7 @@ pub(super) fn check(system: &dyn System, space: &CellSpace) -> Result<(), Genera
 
 /// Flux weights of all lines along an axis, `lines × (count + 1)` windows, by each of several axes whose stencils alone
 /// differ. Line `outer · stride + inner` starts at cell `outer · stride · count + inner`.
-pub(super) fn axis_fluxes<const N: usize>(
+fn axis_fluxes<const N: usize>(
     system: &dyn System,
     axes: [&[AxisGeometry]; N],
     strides: &[usize],
@@ -180,7 +180,7 @@ pub(super) fn axis_fluxes<const N: usize>(
 }
 
 /// Blocks of all lines along an axis of modes: `lines × count × count` rates, the line's number as in [`axis_fluxes`].
-pub(super) fn axis_blocks(
+fn axis_blocks(
     system: &dyn System,
     axes: &[AxisGeometry],
     strides: &[usize],

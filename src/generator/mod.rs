@@ -45,8 +45,8 @@ mod smooth;
 mod spectral_viscosity;
 
 pub(crate) use absorbing::{
-    AbsorbingGenerator, Closure, Ending, RateChange, assemble_absorbing,
-    assemble_with_border_change, lagrange, levels,
+    AbsorbingGenerator, Closure, Ending, RateChange, assemble_absorbing, assemble_with_changes,
+    lagrange, levels,
 };
 pub use assemble::assemble;
 pub(crate) use assemble::{assemble_damped, assemble_lines};

@@ -120,7 +120,7 @@ pub(crate) fn step_bias(
 /// Weak order of an integrator.
 fn order(integrator: Integrator, additive: bool) -> u32 {
     match integrator {
-        Integrator::StochasticHeun if additive => 2,
+        Integrator::StochasticHeun | Integrator::WeakHeun if additive => 2,
         _ => 1,
     }
 }

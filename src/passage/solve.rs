@@ -14,10 +14,7 @@ use super::start::add_state;
 use super::survival::{Survival, models};
 use super::{KnownDensity, Passage, PassageError, Start, dot};
 use crate::cancellation::Cancellation;
-use crate::generator::{
-    AbsorbingGenerator, Closure, Dissipation, GeneratorOptions, RateChange, assemble_absorbing,
-    assemble_with_border_change,
-};
+use crate::generator::{AbsorbingGenerator, GeneratorOptions, RateChange, assemble_with_changes};
 use crate::space::CellSpace;
 use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, Expected, RateOptions};
 use crate::system::{Enclosed, System};
@@ -72,14 +69,7 @@ impl Question<'_> {
         let enclosed = enclosed(self.system, &found);
         let space = found.space;
         let (system, options) = (&enclosed, self.options);
-        let (full, half) = rayon::join(
-            || assemble_with_border_change(system, &space, until, options, Dissipation::Full),
-            || {
-                let scheme = (Dissipation::Half, Closure::Fourth);
-                assemble_absorbing(system, &space, until, options, scheme)
-            },
-        );
-        let ((full, border), half) = (full?, half?);
+        let (full, border, half) = assemble_with_changes(system, &space, until, options)?;
         let spread = self.density.map(|density| density.unknowns);
         let weights =
             |nodes, spread: Option<&[f64]>| self.weights(&space, &full.kept, nodes, spread);

@@ -42,11 +42,10 @@ pub(super) fn add_density(
     };
     let mut is_whole = vec![false; cells.n_cells()];
     let mut sum = 0.0;
+    let is_near_border = spread.near_border(levels);
     for (cell, &level) in levels.iter().enumerate() {
         let is_inside = level < 0.0;
-        let parts = spread
-            .is_near_border(levels, cell)
-            .then(|| spread.cut(cell));
+        let parts = is_near_border[cell].then(|| spread.cut(cell));
         match parts {
             Some(Some(points)) => sum += spread.add(points, target, weights),
             Some(None) => is_whole[cell] = true,
@@ -199,18 +198,33 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
         sum + self.add(aside, (space, kept), weights)
     }
 
-    /// Whether a cell and one of those around it, corners among them, are on both sides of the border.
-    fn is_near_border(&self, levels: &[f64], cell: usize) -> bool {
-        let (shape, dimension) = (self.cells.shape(), self.cells.dimension());
-        (0..3_usize.pow(dimension as u32)).any(|number| {
-            let (mut rest, mut other) = (number, 0);
-            for (axis, &count) in shape.iter().enumerate() {
-                let at = self.cells.position(cell, axis) + rest % 3;
-                rest /= 3;
-                other = other * count + at.saturating_sub(1).min(count - 1);
+    /// Of each cell, whether it and one of those around it, corners among them, are on both sides of the border.
+    fn near_border(&self, levels: &[f64]) -> Vec<bool> {
+        // What lies on either side within one cell along every axis, spread axis by axis.
+        let mut sides: Vec<[bool; 2]> = levels
+            .iter()
+            .map(|&level| {
+                let is_inside = level < 0.0;
+                [is_inside, !is_inside]
+            })
+            .collect();
+        let mut stride = levels.len();
+        for &count in &self.cells.shape() {
+            stride /= count;
+            let before = sides.clone();
+            for (cell, both) in sides.iter_mut().enumerate() {
+                let position = cell / stride % count;
+                let lower = (position > 0).then(|| before[cell - stride]);
+                let upper = (position + 1 < count).then(|| before[cell + stride]);
+                for one in [lower, upper].into_iter().flatten() {
+                    *both = [both[0] || one[0], both[1] || one[1]];
+                }
             }
-            (levels[other] < 0.0) != (levels[cell] < 0.0)
-        })
+        }
+        sides
+            .into_iter()
+            .map(|[inside, outside]| inside && outside)
+            .collect()
     }
 
     /// Points of a cell that lies in the region.

@@ -18,6 +18,7 @@
 #[cfg(test)]
 mod accuracy_tests;
 mod column;
+mod four_point;
 mod growth;
 mod integrator;
 mod jacobian;

@@ -135,7 +135,9 @@ fn time_step(fastest: f64, typical: f64, damping: f64, share: f64, integrator: I
     if damping > 0.0 && typical > 0.0 {
         let spare = share * damping;
         step = step.min(match integrator {
-            Integrator::StochasticHeun => (4.0 * spare / typical.powi(4)).cbrt(),
+            Integrator::StochasticHeun | Integrator::WeakHeun => {
+                (4.0 * spare / typical.powi(4)).cbrt()
+            }
             Integrator::EulerMaruyama => spare / typical.powi(2),
         });
     }

@@ -7,6 +7,7 @@
 
 use multiversion::multiversion;
 
+use super::four_point::{A_WORD, four_point};
 use super::normal::normal_pair;
 use crate::system::{LANES, Lanes};
 
@@ -67,6 +68,12 @@ impl NormalStream {
     pub(crate) fn fill(&mut self, normals: &mut [Lanes]) {
         fill(&mut self.state, normals);
     }
+
+    /// Fills rows of four-point numbers, which serve for laws as normals do. A word makes twelve rows; what is left of
+    /// the last one is dropped.
+    pub(crate) fn fill_for_laws(&mut self, rows: &mut [Lanes]) {
+        fill_for_laws(&mut self.state, rows);
+    }
 }
 
 /// Every lane's generator from a scrambled key: the lanes' own keys differ by a bijection's argument, so they
@@ -86,6 +93,25 @@ fn seed_lanes(key: u64, state: &mut [Words; 4]) {
 #[multiversion(targets = "simd")]
 fn fill(state: &mut [Words; 4], normals: &mut [Lanes]) {
     fill_rows(state, normals);
+}
+
+#[multiversion(targets = "simd")]
+fn fill_for_laws(state: &mut [Words; 4], rows: &mut [Lanes]) {
+    let [s0, s1, s2, s3] = state;
+    for rows in rows.chunks_mut(A_WORD) {
+        let mut random = [0; LANES];
+        for lane in 0..LANES {
+            let mut words = [s0[lane], s1[lane], s2[lane], s3[lane]];
+            random[lane] = next_word(&mut words);
+            [s0[lane], s1[lane], s2[lane], s3[lane]] = words;
+        }
+        for row in rows {
+            for lane in 0..LANES {
+                row[lane] = four_point(random[lane]);
+                random[lane] <<= 4;
+            }
+        }
+    }
 }
 
 /// The loop of [`NormalStream::fill`] for whatever instruction set it is inlined into.
@@ -206,6 +232,39 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn numbers_for_laws_have_their_moments_and_are_uncorrelated() {
+        let rows = 40_000;
+        let mut numbers = vec![[0.0; LANES]; rows];
+        NormalStream::new(key(7, 0, 0)).fill_for_laws(&mut numbers);
+        let n = (rows * LANES) as f64;
+        let moment = |power: i32| numbers.iter().flatten().map(|x| x.powi(power)).sum::<f64>() / n;
+        for (power, mean, variance) in
+            [(1, 0.0, 1.0), (2, 1.0, 2.0), (3, 0.0, 13.5), (4, 3.0, 55.0)]
+        {
+            let error: f64 = moment(power) - mean;
+            assert!(
+                error.abs() < 5.0 * f64::sqrt(variance / n),
+                "{power}: {error}"
+            );
+        }
+        // Between rows of one word and of two, between lanes, and of squares.
+        let check = |product: &dyn Fn(usize, usize) -> f64| {
+            let pairs = (0..rows - A_WORD)
+                .map(|row| (0..LANES).map(|lane| product(row, lane)).sum::<f64>());
+            let scaled = pairs.sum::<f64>() / n.sqrt();
+            assert!(scaled.abs() < 5.0, "{scaled}");
+        };
+        for apart in 1..=A_WORD {
+            check(&|row, lane| numbers[row][lane] * numbers[row + apart][lane]);
+            check(&|row, lane| {
+                (numbers[row][lane].powi(2) - 1.0) * (numbers[row + apart][lane].powi(2) - 1.0)
+                    / 2.0
+            });
+        }
+        check(&|row, lane| numbers[row][lane] * numbers[row][(lane + 1) % LANES]);
     }
 
     /// Largest distance between the empirical and the normal distribution function, times √n.

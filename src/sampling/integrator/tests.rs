@@ -104,6 +104,7 @@ fn weak_orders_for_additive_noise_are_one_and_two() {
     let exact = (f64::exp(-1.0), decay + 1.125 * (1.0 - decay));
     assert_order(&system, Integrator::EulerMaruyama, exact, 1);
     assert_order(&system, Integrator::StochasticHeun, exact, 2);
+    assert_order(&system, Integrator::WeakHeun, exact, 2);
 }
 
 #[test]
@@ -204,4 +205,57 @@ fn a_run_may_be_cut_into_even_pieces() {
         states
     };
     assert_eq!(run(&[57]), run(&[20, 2, 35]));
+}
+
+/// dx = -x³ dt + √2 dW, whose density is as exp(-x⁴/4).
+struct Quartic([Noise; 1]);
+
+impl System for Quartic {
+    fn dimension(&self) -> usize {
+        1
+    }
+    fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
+        drift[0] = states[0].map(|x| -x * x * x);
+    }
+    fn noises(&self) -> &[Noise] {
+        &self.0
+    }
+}
+
+/// E x² and E x⁴ of its steady state over 1.3 million units of time, each less what it is exactly.
+fn quartic_bias(integrator: Integrator, step: f64) -> [f64; 2] {
+    let system = Quartic([Noise::constant(0, std::f64::consts::SQRT_2)]);
+    let stepper = Stepper::new(&system, integrator, step, &Cancellation::new());
+    let mut stream = NormalStream::new(StreamKey {
+        seed: 5,
+        cell: 0,
+        block: 0,
+    });
+    let mut states = [[0.0; LANES]];
+    stepper.advance(&mut states, 0, 200, &mut stream).unwrap();
+    let looks = (2e4 / (4.0 * step)) as usize;
+    let mut sums = [0.0; 2];
+    for _ in 0..looks {
+        stepper.advance(&mut states, 0, 4, &mut stream).unwrap();
+        for x in states[0] {
+            sums[0] += x * x;
+            sums[1] += x.powi(4);
+        }
+    }
+    // 2 Γ(3/4)/Γ(1/4), and 1 by partial integration.
+    let exact = [0.675_978_240_067_284_7, 1.0];
+    [0, 1].map(|k| sums[k] / (looks * LANES) as f64 - exact[k])
+}
+
+#[test]
+fn numbers_for_laws_leave_the_bias_of_normal_ones_which_falls_in_second_order() {
+    let [coarse, fine] = [0.2, 0.1].map(|step| quartic_bias(Integrator::WeakHeun, step));
+    let normal = quartic_bias(Integrator::StochasticHeun, 0.1);
+    eprintln!("{coarse:?} {fine:?} {normal:?}");
+    for moment in 0..2 {
+        let ratio = coarse[moment] / fine[moment];
+        assert!((3.0..6.0).contains(&ratio), "{coarse:?} {fine:?}");
+        let off = (fine[moment] - normal[moment]).abs();
+        assert!(off < 0.2 * normal[moment].abs(), "{fine:?} {normal:?}");
+    }
 }
