@@ -172,7 +172,15 @@ fn moments(
     }
     let matrix = one.matrix();
     let (stage, first) = solver.stage(&matrix, &one.ends, start)?;
-    let second = solver.times(&stage, &first)?;
+    // A density from another grid is turned once toward this grid's by the pass that the second moment takes.
+    let begun = begun.filter(|begun| dot(begun, begun) > 0.0);
+    let (second, turned) = match begun {
+        Some(begun) => {
+            let [second, turned] = solver.times_of_both(&stage, [&first, begun])?;
+            (second, Some((begun, turned)))
+        }
+        None => (solver.times(&stage, &first)?, None),
+    };
     let [weights, others] = &one.weights;
     let expected = solver.expected(&stage, weights)?;
     let again = solver.expected(&stage, &expected.values())?;
@@ -202,13 +210,8 @@ fn moments(
             by_other([(&left, vector)]) - stage.of_balance(&stage.balance(vector), &left, vector);
         -change / left.over(vector)
     };
-    // A density from another grid is turned once toward this grid's, which does where that changes much less of the
-    // quotient than dissipation does.
-    let begun = begun.filter(|begun| dot(begun, begun) > 0.0);
-    let turned = match begun {
-        Some(begun) => Some((quotient(begun), solver.times(&stage, begun)?)),
-        None => None,
-    };
+    // That does where it changes much less of the quotient than dissipation does.
+    let turned = turned.map(|(begun, vector)| (quotient(begun), vector));
     let stands = turned.as_ref().is_some_and(|(before, vector)| {
         let unsettled = (quotient(vector) - before).abs();
         unsettled <= UNSETTLED * rate_change(vector).abs()

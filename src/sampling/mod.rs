@@ -14,6 +14,10 @@
 //! neighbour's mass) until no new cell appears. A chain without the sink is split into strongly connected components;
 //! the steady state lives on the closed one, or, with escape, on the one that keeps its mass longest. Several are
 //! reported, not averaged.
+//!
+//! **Laws, not paths.** A map needs where trajectories end, as a law. Increments with the first five moments of normal
+//! ones give it to the same weak order, from four random bits a step. Whatever compares paths (halving a step, passages)
+//! has normal increments.
 
 #[cfg(test)]
 mod accuracy_tests;

@@ -11,17 +11,20 @@
 //! expected times to the end from each cell, the mean time changes by w·(Q' - Q) z. What is left of either equation
 //! makes up for itself the same way.
 
+mod expected;
+
 use sprs::CsMat;
 
 use super::balance::{add_product, dot, transposed_product};
 use super::narrowing;
 use super::newton::{FirstPass, norm, refined};
-use super::passes::{Seat, run_alone};
+use super::passes::{Seat, run_alone, together};
 use super::preconditioner::{LARGE, NO_CELL, Preconditioner, Structure, estimate_of};
 use super::solver::{largest, shape};
 use super::{RateError, RateMethod, RateOptions};
 use crate::cancellation::Cancellation;
 use crate::space::CellSpace;
+pub(crate) use expected::Expected;
 
 /// Another cell is held where the one that is held is occupied for less than this share of the longest time.
 const LEAST_HELD: f64 = 1e-3;
@@ -80,72 +83,6 @@ struct Visits {
     unit: Vec<f64>,
     /// Probability that the process ends before it is in the held cell, from each cell; zero from that cell.
     ended: Vec<f64>,
-}
-
-/// What a process is expected to gather on its way from each cell to its end.
-pub(crate) struct Expected {
-    /// From the held cell; zero where none is.
-    at_held: f64,
-    /// From each cell, less than from the held one: known to more digits than the difference.
-    beside: Vec<f64>,
-}
-
-impl Expected {
-    /// From each cell.
-    pub(crate) fn values(&self) -> Vec<f64> {
-        let values = self.beside.iter().map(|value| value + self.at_held);
-        values.collect()
-    }
-
-    /// From each cell, less than from the held one.
-    pub(crate) fn beside(&self) -> &[f64] {
-        &self.beside
-    }
-
-    /// w·Q z of pairs w and z, for a generator that is given by its rates (row, column, rate), any number of them for a
-    /// place, and the rates of its ends.
-    pub(crate) fn through<const N: usize>(
-        pairs: [(&Self, &[f64]); N],
-        rates: &[(usize, usize, f64)],
-        ends: &[f64],
-    ) -> [f64; N] {
-        // Columns sum to minus the ends, so that the held cell's value meets what ends alone.
-        let mut within = [0.0; N];
-        for &(row, column, rate) in rates {
-            for (sum, (expected, times)) in within.iter_mut().zip(&pairs) {
-                *sum += expected.beside[row] * rate * times[column];
-            }
-        }
-        for (sum, (expected, times)) in within.iter_mut().zip(&pairs) {
-            *sum -= expected.at_held * dot(ends, times);
-        }
-        within
-    }
-
-    /// g + Qᵀ f for another generator and its gain: what its own equation for what is expected is short of.
-    pub(crate) fn left_by(
-        &self,
-        rates: &[(usize, usize, f64)],
-        ends: &[f64],
-        gain: &[f64],
-    ) -> Vec<f64> {
-        let pairs = gain.iter().zip(ends);
-        let mut left: Vec<f64> = pairs.map(|(gain, end)| gain - self.at_held * end).collect();
-        for &(row, column, rate) in rates {
-            left[column] += rate * self.beside[row];
-        }
-        left
-    }
-
-    /// The sum of what is expected over a start.
-    pub(crate) fn over(&self, start: &[f64]) -> f64 {
-        dot(&self.beside, start) + self.at_held * start.iter().sum::<f64>()
-    }
-
-    /// What two starts, each with Σ = 1, differ by.
-    pub(crate) fn difference(&self, one: &[f64], other: &[f64]) -> f64 {
-        dot(&self.beside, one) - dot(&self.beside, other)
-    }
 }
 
 impl Absorbing<'_> {
@@ -375,10 +312,8 @@ impl<'s> AbsorbingSolver<'s> {
         start: &[f64],
     ) -> Result<Vec<f64>, RateError> {
         let held = stage.held;
-        let mut source: Vec<f64> = start.iter().map(|value| -value).collect();
-        clear(&mut source, held);
         // What is beside the visits of the held cell.
-        let mut times = self.reduced(stage.matrix, held, &source, false)?;
+        let mut times = self.reduced(stage.matrix, held, &without(start, held), false)?;
         let Some(Visits { unit, .. }) = &stage.visits else {
             return Ok(times);
         };
@@ -387,6 +322,41 @@ impl<'s> AbsorbingSolver<'s> {
         let pairs = times.iter_mut().zip(unit);
         pairs.for_each(|(value, unit)| *value += time * unit);
         Ok(times)
+    }
+
+    /// [`AbsorbingSolver::times`] of two starts, which share their passes where no cell is held.
+    ///
+    /// # Errors
+    /// As [`AbsorbingSolver::times`].
+    pub(crate) fn times_of_both(
+        &mut self,
+        stage: &Absorbing<'_>,
+        starts: [&[f64]; 2],
+    ) -> Result<[Vec<f64>; 2], RateError> {
+        let is_zero = |start: &[f64]| start.iter().all(|&value| value == 0.0);
+        let kept = match &self.preconditioner {
+            Some(kept) if stage.visits.is_none() && !starts.into_iter().any(is_zero) => kept,
+            _ => {
+                let [one, other] = starts;
+                return Ok([self.times(stage, one)?, self.times(stage, other)?]);
+            }
+        };
+        let sources = starts.map(|start| without(start, stage.held));
+        let operator = |x: &[f64]| product((stage.matrix, stage.held), x, false);
+        let seats = [Seat::default(), Seat::default()];
+        let effort = (self.options.tolerance, self.options.max_iterations);
+        let [one, other] = [0, 1].map(|at| {
+            let source = (sources[at].as_slice(), self.first);
+            refined(&seats[at], &operator, source, effort, &self.cancellation)
+        });
+        let (one, other, _) = together(kept, seats.each_ref(), one, other);
+        let [one, other] = [one?, other?].map(|found| found.ok_or(RateError::Sensitivity));
+        let (one, other) = (one?, other?);
+        self.work.passes += one.used + other.used;
+        if self.is_rough {
+            self.first = self.first.or(one.first);
+        }
+        Ok([one.solution, other.solution])
     }
 
     /// What a process that starts in each cell is expected to gather before it ends, where a cell that is occupied
@@ -438,17 +408,7 @@ impl<'s> AbsorbingSolver<'s> {
         if source.iter().all(|&value| value == 0.0) {
             return Ok(source.to_vec());
         }
-        let operator = |x: &[f64]| {
-            let mut out = if is_transposed {
-                transposed_product(matrix, x)
-            } else {
-                let mut out = vec![0.0; x.len()];
-                add_product(matrix, x, &mut out);
-                out
-            };
-            clear(&mut out, held);
-            out
-        };
+        let operator = |x: &[f64]| product((matrix, held), x, is_transposed);
         let seat = Seat::default();
         let effort = (self.options.tolerance, self.options.max_iterations);
         let source = (source, self.first);
@@ -483,7 +443,20 @@ fn clear(values: &mut [f64], held: usize) {
     }
 }
 
-/// The right side of what is gathered before a cell is reached.
+/// Q x (Qᵀ x where it is transposed), zero at the cell that is held.
+fn product((matrix, held): (&CsMat<f64>, usize), x: &[f64], is_transposed: bool) -> Vec<f64> {
+    let mut out = if is_transposed {
+        transposed_product(matrix, x)
+    } else {
+        let mut out = vec![0.0; x.len()];
+        add_product(matrix, x, &mut out);
+        out
+    };
+    clear(&mut out, held);
+    out
+}
+
+/// The right side of what is spread or gathered beside a cell that is held.
 fn without(gain: &[f64], held: usize) -> Vec<f64> {
     let mut negative: Vec<f64> = gain.iter().map(|value| -value).collect();
     clear(&mut negative, held);
