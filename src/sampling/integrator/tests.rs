@@ -251,7 +251,6 @@ fn quartic_bias(integrator: Integrator, step: f64) -> [f64; 2] {
 fn numbers_for_laws_leave_the_bias_of_normal_ones_which_falls_in_second_order() {
     let [coarse, fine] = [0.2, 0.1].map(|step| quartic_bias(Integrator::WeakHeun, step));
     let normal = quartic_bias(Integrator::StochasticHeun, 0.1);
-    eprintln!("{coarse:?} {fine:?} {normal:?}");
     for moment in 0..2 {
         let ratio = coarse[moment] / fine[moment];
         assert!((3.0..6.0).contains(&ratio), "{coarse:?} {fine:?}");
