@@ -10,7 +10,11 @@ class Editor {
 
   open() {
     $("editor").showModal();
-    $("editor-text").focus();
+    const text = $("editor-text");
+    text.focus();
+    // The caret of a text that was filled in stands at its end.
+    if (text.selectionStart === text.value.length) text.setSelectionRange(0, 0);
+    text.scrollTop = 0;
     if (!this.starts) this.list();
   }
 
@@ -26,7 +30,10 @@ class Editor {
 
   /** Puts the text of a system of the gallery, or of the one that is shown, in the place of what stands there. */
   begin(name) {
-    $("editor-text").value = this.starts?.find((start) => start.name === name)?.text ?? this.page.scene.typed;
+    const text = $("editor-text");
+    text.value = this.starts?.find((start) => start.name === name)?.text ?? this.page.scene.typed;
+    text.setSelectionRange(0, 0);
+    text.scrollTop = 0;
     $("editor-says").textContent = "";
   }
 
