@@ -498,6 +498,73 @@ def live_map(driver, pbif, folder, axe):
     print("live map: clicked, mapped, given up, nothing in the console")
 
 
+WELL = """title = "A well that opens"
+[system.equations]
+x = "c x - x^5"
+[system.noise]
+x = "0.4"
+[sweep]
+parameter = "c"
+from = -1
+to = 1
+points = 5
+[cells]
+x = { from = -2, to = 2, count = 60 }
+"""
+
+
+def edits(browser, axe, images):
+    """Equations are changed in the page: what is wrong is said, with its place; what is right is shown at an address of its own; the way back leads
+    to the system before."""
+    before = browser.run("return location.pathname")
+    browser.click("#edit")
+    browser.until("return document.querySelectorAll('#editor-start option').length > 20", "the gallery is not listed")
+    is_usable(browser, axe, "the editor")
+    fits(browser, "the editor")
+    if images:
+        browser.picture(f"{images}/explorer_editor.png")
+    choose(browser, "#editor-start", "vanderpol")
+    browser.until("return document.getElementById('editor-text').value.includes('Van der Pol')", "no text of the gallery")
+    write = "document.getElementById('editor-text').value = arguments[0]"
+    browser.run(write, WELL.replace("x^5", "z^5"))
+    browser.click("#editor-show")
+    browser.until("return document.getElementById('editor-says').textContent.includes('^ here')", "nothing is said of a wrong formula")
+    marked = browser.run("const { value, selectionStart, selectionEnd } = document.getElementById('editor-text'); return value.slice(selectionStart, selectionEnd)")
+    assert marked.startswith("z^5"), marked
+    is_usable(browser, axe, "the editor with an error")
+    browser.run(write, WELL)
+    browser.click("#editor-show")
+    browser.until(f"return location.pathname !== '{before}' && document.documentElement.dataset.solved?.endsWith('full')", "the edited system is not shown")
+    assert browser.run("return document.getElementById('title').textContent") == "A well that opens"
+    browser.call("POST", "/back")
+    browser.until(f"return location.pathname === '{before}' && document.documentElement.dataset.solved?.endsWith('full')", "the way back leads elsewhere")
+
+
+def live_phases(driver, pbif, folder, axe):
+    """Densities at phases of a forcing: a slider shows those of one phase, and the period runs."""
+    settings = ["--set", "detect.marginals=[\"x @ 8 phases\"]", "--set", "cells.x.count=60"]
+    server = Server(pbif, folder, "gallery/stochastic_resonance", settings)
+    browser = Browser(driver, False)
+    browser.open(server.address)
+    browser.until("return document.documentElement.dataset.solved?.endsWith('full')", "nothing is solved")
+    is_usable(browser, axe, "phases")
+    fits(browser, "phases")
+    shown = "return [...document.querySelectorAll('#marginals figure')].filter((one) => one.checkVisibility()).map((one) => one.getAttribute('aria-label'))"
+    first = browser.run(shown)
+    assert len(first) == 1, first
+    browser.run("const phase = document.getElementById('phase'); phase.value = '2'; phase.dispatchEvent(new Event('input'))")
+    assert browser.run("return document.getElementById('phase-says').textContent") == "0.25 of the period"
+    second = browser.run(shown)
+    assert len(second) == 1 and second != first, second
+    browser.click("#run")
+    browser.until("return document.getElementById('phase').value !== '2'", "the period does not run")
+    browser.click("#run")
+    assert not browser.console(), browser.console()
+    browser.close()
+    server.stop()
+    print("phases: one at a time, a slider, a period that runs")
+
+
 def live(driver, pbif, folder, axe, kept, images):
     server = Server(pbif, folder)
     browser = Browser(driver, False)
@@ -520,6 +587,7 @@ def live(driver, pbif, folder, axe, kept, images):
     assert times[-1] < 5000, times
     locates(browser)
     follows_paths(browser, kept, axe)
+    edits(browser, axe, images)
     browser.run("const typed = document.getElementById('typed'); typed.value = '1e999'; typed.dispatchEvent(new Event('change'))")
     browser.until("return document.getElementById('refused').textContent !== ''", "a value that is none is not refused")
     assert not browser.console(), browser.console()
@@ -539,7 +607,7 @@ def live(driver, pbif, folder, axe, kept, images):
         browser.picture(f"{images}/explorer_paths.png")
         again.stop()
     browser.close()
-    print("live: two tabs, sample paths, refused values, a server that is killed and started again")
+    print("live: two tabs, sample paths, edited systems, refused values, a server that is killed and started again")
 
 
 def main():
@@ -577,6 +645,7 @@ def main():
             from_disk_map(at, os.path.join(folder, "map.html"), axe, kept, images)
             live(at, pbif, folder, axe, kept, images)
             live_map(at, pbif, folder, axe)
+            live_phases(at, pbif, folder, axe)
     finally:
         # A browser that a failed test left open would go on without its driver.
         for browser in list(Browser.opened):

@@ -3,7 +3,7 @@
 
 use super::measure::{DEVIATION, EDGE_MASS, MEAN};
 use super::{CellCheck, ErrorParts, Finding, Point, PointStatus, Subject};
-use crate::density::Density;
+use crate::density::{Density, EstimatedDensity, Observable};
 use crate::space::Axis;
 
 /// How well a P-bifurcation is known.
@@ -232,9 +232,14 @@ impl WiderRange {
         let report = &point.report;
         report.edge_mass()?;
         let names = || subject.family.model().axes.iter().map(|axis| &axis.name);
-        let masses = names().filter_map(|name| Some((name, report.of(&EDGE_MASS, name)?)));
+        // A table that is read back does not tell of which axis; the marginal of the axis does where it is watched.
+        let mass = |(axis, name): (usize, &String)| {
+            let told = report.of(&EDGE_MASS, name);
+            told.or_else(|| mass_at_ends(point, axis))
+        };
+        let masses = names().enumerate();
+        let masses = masses.filter_map(|(axis, name)| Some((name, mass((axis, name))?)));
         let largest = masses.max_by(|a, b| a.1.total_cmp(&b.1));
-        // A table that is read back does not tell of which axis.
         let name = largest.map(|one| one.0).or_else(|| names().next())?;
         let moments = report.of(&MEAN, name).zip(report.of(&DEVIATION, name));
         let range = moments.map(|(mean, deviation)| {
@@ -246,6 +251,16 @@ impl WiderRange {
             range,
         })
     }
+}
+
+/// The mass of the outermost cells of an axis whose marginal is watched.
+fn mass_at_ends(point: &Point, axis: usize) -> Option<f64> {
+    let is_its = |one: &&EstimatedDensity| one.observable == Observable::Marginal(axis);
+    let masses = point.densities.iter().find(is_its)?.density.masses();
+    let [first, .., last] = masses[..] else {
+        return None;
+    };
+    Some(first + last)
 }
 
 /// What is known of a zero besides where it is.

@@ -9,7 +9,7 @@ const FRAME: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/page.css");
 
 /// The parts of the script in the order in which they need each other.
-const SCRIPT: [&str; 19] = [
+const SCRIPT: [&str; 20] = [
     include_str!("page/unpack.js"),
     include_str!("page/numbers.js"),
     include_str!("page/colours.js"),
@@ -28,6 +28,7 @@ const SCRIPT: [&str; 19] = [
     include_str!("page/asking.js"),
     include_str!("page/paths.js"),
     include_str!("page/live.js"),
+    include_str!("page/editor.js"),
     include_str!("page/start.js"),
 ];
 

@@ -301,7 +301,7 @@ fn passage_in_words(family: &Family, passage: usize, fault: PassageFault) -> Str
         }
         PassageFault::NoSwitching => {
             return format!(
-                "passage `{name}` has no rates from the slowest mode: that is no exchange between its two regions, or is not known"
+                "passage `{name}` has no rates from the slowest mode: that is no exchange between its two regions, or these cells do not tell it to a tenth: more of them may"
             );
         }
     };

@@ -1,7 +1,10 @@
 //! `densities.zarr`: marginal and joint densities of a sweep as a Zarr v3 store that `xarray.open_zarr` reads as it is.
 //!
-//! What the arrays are is said in `arrays`. The store is written at once, each array in one file or a few; until then
-//! the journal holds all densities. It is made beside its place and put there when it is whole.
+//! What the arrays are is said in `arrays`. The store is written at once; until then the journal holds all densities. It
+//! is made beside its place and put there when it is whole.
+//!
+//! An array is divided into a file a value where few of its values have numbers, or where the whole store has few values:
+//! damage to a file then costs one value, and what has no numbers takes no room. Else it is one file, or a few large ones.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -12,7 +15,7 @@ use serde_json::{Map, Value, json};
 use super::RunError;
 use super::arrays::Layout;
 use super::tree::rename;
-use super::zarr::{self, Row};
+use super::zarr::{self, Chunks, Row};
 use crate::UNFINISHED;
 use crate::continuation::StateField;
 use crate::density::{EstimatedDensity, Variants};
@@ -55,6 +58,12 @@ pub(super) fn write_store(
     }
     rename(&fresh, path)
 }
+
+/// Values of a density, counted over all arrays, up to which each is a file: a run then has no more than about 60 files.
+const MOST_FILES: usize = 36;
+
+/// Values of one array with numbers up to which each is a file, where others have none.
+const FEW_VALUES: usize = 4;
 
 /// A store that is composed.
 #[derive(Default)]
@@ -170,13 +179,28 @@ impl<'a> Store<'a> {
     /// Writes all arrays, and what readers need not look for then: the metadata of all of them in one place.
     fn write(mut self, family: &Family, folder: &Path) -> std::io::Result<()> {
         let values = self.arrays.first().map_or(0, |(_, rows)| rows.len());
+        let filled = |rows: &[Row<'_>]| rows.iter().filter(|row| !row.is_empty()).count();
+        let of_densities = |layout: &Layout| layout.is_along(family) && layout.dimensions.len() > 1;
+        let densities = self
+            .arrays
+            .iter()
+            .filter(|(layout, _)| of_densities(layout));
+        let is_small = densities.map(|(_, rows)| filled(rows)).sum::<usize>() <= MOST_FILES;
         let written = self.arrays.par_iter_mut().map(|(layout, rows)| {
+            let number = filled(rows);
             if layout.is_along(family) {
                 rows.resize(values, Vec::new());
             }
+            let is_sparse = number <= FEW_VALUES && number < rows.len();
+            let chunks = if of_densities(layout) && (is_small || is_sparse) {
+                Chunks::EachIndex
+            } else {
+                Chunks::Few
+            };
             layout.dimensions[0].1 = rows.len() as u64;
             let folder = folder.join(&layout.name);
-            let about = zarr::write(&folder, &layout.dimensions, &layout.attributes, rows)?;
+            let (dimensions, attributes) = (&layout.dimensions, &layout.attributes);
+            let about = zarr::write(&folder, dimensions, attributes, (rows, chunks))?;
             Ok((layout.name.clone(), about))
         });
         let metadata: std::io::Result<Vec<(String, Value)>> = written.collect();

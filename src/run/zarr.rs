@@ -1,8 +1,8 @@
 //! Arrays of numbers in the format Zarr v3, as far as this program has ever written it: an array is a folder with its
 //! metadata as JSON and its chunks, files of little-endian numbers without compression.
 //!
-//! Chunks divide the first dimension. Those of early versions hold one index of it each, and may divide the second
-//! dimension too. NaN stands for what no chunk holds.
+//! Chunks divide the first dimension: into single indices, of which those without numbers have no chunk, or into a few
+//! long parts. Those of early versions may divide the second dimension too. NaN stands for what no chunk holds.
 
 use std::borrow::Cow;
 use std::fs::File;
@@ -43,6 +43,15 @@ fn codecs() -> Value {
 /// The numbers of an array at one index of the first dimension, in parts; what they do not fill is NaN.
 pub(super) type Row<'a> = Vec<Cow<'a, [f64]>>;
 
+/// How an array is divided into chunks along its first dimension.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Chunks {
+    /// As few as [`LARGEST_CHUNK`] allows.
+    Few,
+    /// One an index that has numbers.
+    EachIndex,
+}
+
 /// Writes an array with named dimensions into the folder `folder`, which is made, and returns its metadata.
 ///
 /// # Errors
@@ -51,7 +60,7 @@ pub(super) fn write(
     folder: &Path,
     dimensions: &[(String, u64)],
     attributes: &Map<String, Value>,
-    rows: &[Row<'_>],
+    (rows, chunks): (&[Row<'_>], Chunks),
 ) -> Result<Value> {
     let (names, mut chunk): (Vec<&str>, Vec<u64>) = dimensions
         .iter()
@@ -62,11 +71,18 @@ pub(super) fn write(
     let most = (LARGEST_CHUNK / NUMBER / length.max(1)).max(1);
     let count = (rows.len() as u64).div_ceil(most).max(1);
     // As many rows in every chunk: the last one has to be as long as the others.
-    let long = (rows.len() as u64).div_ceil(count).max(1);
+    let long = match chunks {
+        Chunks::Few => (rows.len() as u64).div_ceil(count).max(1),
+        Chunks::EachIndex => 1,
+    };
     if let Some(first) = chunk.first_mut() {
         *first = long;
     }
+    std::fs::create_dir_all(folder)?;
     for (number, rows) in rows.chunks(long as usize).enumerate() {
+        if rows.iter().all(Vec::is_empty) {
+            continue;
+        }
         let mut bytes = Vec::with_capacity((long * length * NUMBER) as usize);
         for (index, row) in rows.iter().enumerate() {
             for number in row.iter().flat_map(|part| part.iter()) {

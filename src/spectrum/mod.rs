@@ -91,6 +91,7 @@ mod peak;
 mod power;
 mod resolvent;
 mod slow;
+mod slowest;
 mod switching;
 mod transfer;
 

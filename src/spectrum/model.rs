@@ -144,9 +144,8 @@ pub(super) fn product(matrix: &CsMat<f64>, vector: &[f64]) -> Vec<f64> {
     image
 }
 
-/// An eigenvalue of a model with what belongs to it.
+/// What belongs to an eigenvalue of a model.
 pub(super) struct Eigen {
-    pub(super) value: Complex<f64>,
     /// By how much the second generator changes it, to first order.
     pub(super) change: Complex<f64>,
     /// Weights of the columns and of the rows; lᵀ r = 1.
@@ -219,7 +218,6 @@ impl ReducedModel {
         left /= scale;
         let change = (&self.second - &self.first).map(|rate| Complex::new(rate, 0.0));
         Some(Eigen {
-            value,
             change: left.dot(&(change * &right)),
             columns: self.columns.map(|one| Complex::new(one, 0.0)) * right,
             rows: self.rows.transpose().map(|one| Complex::new(one, 0.0)) * left,

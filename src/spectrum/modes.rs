@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::grid::{Grid, ending};
-use super::model::{Basis, Eigen, Products, ReducedModel};
+use super::model::{Basis, Products, ReducedModel};
 use super::{SpectrumError, Steady};
 use crate::cancellation::Cancellation;
 use crate::space::CellSpace;
@@ -40,7 +40,7 @@ const TOLERANCE: f64 = 1e-7;
 const SAME: f64 = 1e-2;
 
 /// Relative change by half of the dissipation from which a number is none of the equation.
-const ARTEFACT: f64 = 0.3;
+pub(super) const ARTEFACT: f64 = 0.3;
 
 /// What the ends do is an estimate: it is taken so many times.
 const SAFETY: f64 = 2.0;
@@ -49,7 +49,7 @@ const SAFETY: f64 = 2.0;
 const NO_MASS: f64 = 1e-12;
 
 /// Seed of the vectors that begin.
-const SEED: u64 = 0x5eed;
+pub(super) const SEED: u64 = 0x5eed;
 
 /// An eigenvalue on one grid.
 #[derive(Clone)]
@@ -131,10 +131,12 @@ pub(super) fn modes(
     let all = found.iter().filter_map(|&(value, change)| {
         let eigen = model.eigen(value)?;
         let relative = (eigen.change / value).norm();
+        let (left, right) = (rows.combined(&eigen.rows), columns.combined(&eigen.columns));
+        let product = |cell: usize| (left[cell] * right[cell]).norm();
         (relative <= ARTEFACT).then(|| GridMode {
-            error: change + of_ends(grid, &eigen, (&rows, &columns), motion),
+            error: change + of_ends(grid, value.norm(), product, motion),
             left: match value.im {
-                0.0 => real(&rows.combined(&eigen.rows)),
+                0.0 => real(&left),
                 _ => Vec::new(),
             },
             value,
@@ -222,17 +224,19 @@ pub(super) fn in_order<T>(modes: &mut [T], value: impl Fn(&T) -> Complex<f64>) {
     }
 }
 
-/// What the ends of the range do to an eigenvalue, at most. A wall at the distance b from the mean changes it by
+/// What the ends of the range do to an eigenvalue of a size, at most; `product` is |l r| at a cell. A wall at the distance b from the mean changes it by
 /// D l'(b) r(b). With l a polynomial and the density a Gaussian one of deviation σ that is, over the eigenvalue, the
 /// product l r at the end times σ²/b.
-fn of_ends(grid: &Grid, eigen: &Eigen, (rows, columns): (&Basis, &Basis), motion: &Motion) -> f64 {
-    let (left, right) = (rows.combined(&eigen.rows), columns.combined(&eigen.columns));
+pub(super) fn of_ends(
+    grid: &Grid,
+    size: f64,
+    product: impl Fn(usize) -> f64,
+    motion: &Motion,
+) -> f64 {
     let (places, weights) = motion.at_ends(&grid.space);
     let sizes = places.into_iter().zip(weights);
-    let share: f64 = sizes
-        .map(|(cell, weight)| weight * (left[cell] * right[cell]).norm())
-        .sum();
-    share / motion.rate * eigen.value.norm()
+    let share: f64 = sizes.map(|(cell, weight)| weight * product(cell)).sum();
+    share / motion.rate * size
 }
 
 /// How fast and how far states move in a steady state.

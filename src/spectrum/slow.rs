@@ -7,6 +7,7 @@ use nalgebra::Complex;
 use super::errors::{DAMPED, FEWER, on_grids};
 use super::grid::Grid;
 use super::modes::{GridMode, Motion, in_order, modes};
+use super::slowest::slowest;
 use super::{SpectrumError, Steady};
 use crate::cancellation::Cancellation;
 use crate::generator::GeneratorOptions;
@@ -39,7 +40,9 @@ pub struct SlowModes {
     pub work: AbsorbingWork,
 }
 
-/// The slowest modes of a system on the cells of a sweep. They do not depend on what was solved before.
+/// The slowest modes of a system on the cells of a sweep. They do not depend on what was solved before. With none
+/// wanted, that with the eigenvalue nearest to zero alone, which takes a few solves where it is an exchange between
+/// states that happens rarely.
 ///
 /// # Errors
 /// [`SpectrumError`].
@@ -51,8 +54,13 @@ pub fn slow_modes(
     settings: (&GeneratorOptions, &RateOptions),
     cancellation: &Cancellation,
 ) -> Result<SlowModes, SpectrumError> {
-    let solve =
-        |grid: &Grid, motion: &Motion| modes(grid, wanted, motion, (settings.1, cancellation));
+    let solve = |grid: &Grid, motion: &Motion| {
+        let options = (settings.1, cancellation);
+        match wanted {
+            0 => slowest(grid, motion, options),
+            _ => modes(grid, wanted, motion, options),
+        }
+    };
     let ((found, fewer), work) = on_grids(system, space, steady, settings.0, solve)?;
     let mut errors: Vec<Complex<f64>> = found
         .iter()
@@ -77,8 +85,8 @@ pub fn slow_modes(
         value.re < 0.0 && error.re <= UNKNOWN * value.norm()
     };
     let first_unknown = known.iter().position(|one| !is_known(one));
-    known.truncate(first_unknown.unwrap_or(wanted));
-    known.truncate(wanted);
+    known.truncate(first_unknown.unwrap_or(usize::MAX));
+    known.truncate(wanted.max(1));
     let first = found.iter().find(|one| {
         let slowest = known.first();
         slowest.is_some_and(|(value, _)| one.extrapolation() == *value)

@@ -211,6 +211,15 @@ fn value_of(key: &Key, path: &[&str], node: &SpannedValue) -> Result<Plain, Box<
                 |item: &&SpannedValue| item.plain().is_none_or(|plain| !kind.holds(&plain));
             (*kind, items.iter().find(is_wrong).unwrap_or(node))
         }
+        (Kind::Bounds, Value::Array(items)) => {
+            let is_end = |item: &SpannedValue| item.plain().and_then(|one| keys::end_of(&one));
+            let other = match &items[..] {
+                [one, other] if is_end(other).is_some() => Some(one),
+                [one, other] if is_end(one).is_some() => Some(other),
+                _ => None,
+            };
+            (key.kind, other.unwrap_or(node))
+        }
         (kind, _) => (kind, node),
     };
     let shown = match &blamed.value {
@@ -278,6 +287,7 @@ fn suggestion(kind: Kind, node: &SpannedValue) -> Option<String> {
             _ => nearest_name(plain.text()?, names()).map(str::to_owned),
         },
         Kind::Model => nearest_name(plain.text()?, models()).map(str::to_owned),
+        Kind::Bounds => keys::nearest_bound(plain.text()?).map(str::to_owned),
         Kind::Width => {
             let text = plain.text()?;
             let number = text.strip_suffix("mm").map(str::trim);

@@ -73,6 +73,13 @@ impl Served {
         )
     }
 
+    /// The page in a folder below the address, head included.
+    pub(super) fn page(&self, folder: &str) -> String {
+        let (port, path) = (self.port, self.path());
+        let host = format!("Host: 127.0.0.1:{port}");
+        self.raw(format!("GET {path}{folder} HTTP/1.1\r\n{host}\r\n\r\n").as_bytes())
+    }
+
     pub(super) fn post(&self, name: &str, body: &str) -> (u16, serde_json::Value) {
         let answer = self.raw(self.request(name, body).as_bytes());
         let (head, body) = answer.split_once("\r\n\r\n").unwrap();
@@ -87,7 +94,7 @@ impl Drop for Served {
     }
 }
 
-fn status(answer: &str) -> u16 {
+pub(super) fn status(answer: &str) -> u16 {
     let word = answer.split(' ').nth(1);
     word.and_then(|word| word.parse().ok()).unwrap_or(0)
 }
@@ -211,7 +218,7 @@ fn the_server_refuses_whoever_is_not_its_page() {
         status(&served.raw(format!("GET {path} HTTP/1.1\r\n{headers}\r\n\r\n").as_bytes()))
     };
     let host = format!("Host: 127.0.0.1:{port}");
-    let page = served.raw(format!("GET {path} HTTP/1.1\r\n{host}\r\n\r\n").as_bytes());
+    let page = served.page("");
     assert!(
         status(&page) == 200
             && page.contains("<!doctype html>")
@@ -298,9 +305,7 @@ fn assert_sliders_move(file: &Path, is_moved: impl Fn(usize) -> bool) {
         .map(|(key, value)| format!("{key}={value}"))
         .collect();
     let served = Served::of(&text, &settings.join(" "));
-    let (port, path) = (served.port, served.path());
-    let page =
-        served.raw(format!("GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n").as_bytes());
+    let page = served.page("");
     assert_eq!(status(&page), 200, "{}", file.display());
     let scene = scene(&page);
     let family = served.sweep.problem.family();

@@ -311,14 +311,10 @@ fn measured<const N: usize>(text: &str, names: [&str; N]) -> [pbif::continuation
     })
 }
 
-#[test]
-fn formulas_for_high_barriers_are_the_gap_but_for_what_they_leave_out() {
-    // Duffing's well, ΔV = 1/4. What Mel'nikov and Meshkov leave out is of the order of T/ΔV.
-    let off = |temperature: f64| {
-        let names = ["go_switching_rate", "go_kramers", "go_melnikov"];
-        let [rate, kramers, melnikov] = measured(
-            &format!(
-                r#"
+/// Duffing's well, ΔV = 1/4, with damping g from 0.5 on, at a temperature, on n × n cells; passages between two regions.
+fn well(temperature: f64, [x, y]: [f64; 2], n: usize, [left, right]: [&str; 2]) -> String {
+    format!(
+        r#"
 [system.equations]
 x = "y"
 y = "x - x^3 - g y"
@@ -332,26 +328,56 @@ from = 0.5
 to = 0.6
 points = 2
 [cells]
-x = {{ from = -2.2, to = 2.2, count = 72 }}
-y = {{ from = -1.8, to = 1.8, count = 72 }}
+x = {{ from = -{x}, to = {x}, count = {n} }}
+y = {{ from = -{y}, to = {y}, count = {n} }}
 [passage]
-go = {{ from = "x < -0.5", to = "x > 0.5", switching = "on" }}
+go = {{ from = "{left}", to = "{right}", switching = "on" }}
 "#
-            ),
-            names,
-        );
+    )
+}
+
+#[test]
+fn formulas_for_high_barriers_are_the_gap_but_for_what_they_leave_out() {
+    // What Mel'nikov and Meshkov leave out is of the order of T/ΔV.
+    let off = |temperature: f64, cells: usize| {
+        let names = ["go_switching_rate", "go_kramers", "go_melnikov"];
+        let text = well(temperature, [2.1, 1.6], cells, ["x < -0.5", "x > 0.5"]);
+        let [rate, kramers, melnikov] = measured(&text, names);
         println!("T = {temperature}: {rate:?}, Kramers {kramers:?}, Mel'nikov {melnikov:?}");
         assert_eq!((kramers.error, melnikov.error), (None, None));
         assert!(kramers.value > melnikov.value);
-        (
-            melnikov.value / rate.value - 1.0,
-            rate.error.unwrap() / rate.value,
-        )
+        let share = rate.error.unwrap() / rate.value;
+        (melnikov.value / rate.value - 1.0, share)
     };
-    let temperature = 0.06;
-    let (change, error) = off(temperature);
-    let left_out = temperature / 0.25;
-    assert!(change.abs() < left_out + error, "{change} {error}");
+    let both = [(0.06, 72), (0.03, 96)].map(|(temperature, cells)| {
+        let (change, error) = off(temperature, cells);
+        let left_out = temperature / 0.25;
+        assert!(change.abs() < left_out + error, "{change} {error}");
+        (change, error)
+    });
+    let [(high, _), (low, error)] = both;
+    assert!(low < 0.8 * high + error, "{both:?}");
+}
+
+#[test]
+fn the_slowest_mode_alone_is_the_first_of_several() {
+    let tilted = model(&[("x", "x - x^3 + 0.1")], &[("x", "0.35")]);
+    let duffing = model(&[("x", "y"), ("y", "x - x^3 - y/2")], &[("y", "0.3")]);
+    let on_a_line = [(-2.2, 2.4, 160)];
+    let in_a_plane = [(-2.1, 2.1, 48), (-1.8, 1.8, 48)];
+    for (model, axes) in [(tilted, &on_a_line[..]), (duffing, &in_a_plane[..])] {
+        let [alone, several] = [0, 2].map(|wanted| modes(&model, axes, wanted));
+        println!("{:?}, {:?}", alone.work, several.work);
+        let [one, first] = [&alone, &several].map(|found| found.modes[0]);
+        assert_eq!((alone.modes.len(), one.frequency), (1, (0.0, 0.0)));
+        assert!(
+            (one.decay.0 - first.decay.0).abs() < 1e-4 * first.decay.0,
+            "{one:?} {first:?}"
+        );
+        assert!(one.decay.1 <= first.decay.1, "{one:?} {first:?}");
+        // On three grids, at two shifts each.
+        assert!(alone.work.factorisations <= 6 && alone.work.passes < several.work.passes);
+    }
 }
 
 /// ∫ f over a range, by the midpoint rule.
@@ -433,25 +459,9 @@ go = {{ from = "x < -{border}", to = "x > {border}", switching = "on" }}
 
 #[test]
 fn an_underdamped_well_is_left_as_often_as_paths_leave_it() {
-    let [there, back] = between(
-        r#"
-[system.equations]
-x = "y"
-y = "x - x^3 - g y"
-[system.noise]
-y = "sqrt(0.12 g)"
-[sweep]
-parameter = "g"
-from = 0.5
-to = 0.6
-points = 2
-[cells]
-x = { from = -2.1, to = 2.1, count = 56 }
-y = { from = -1.8, to = 1.8, count = 56 }
-[passage]
-go = { from = "y^2/2 - x^2/2 + x^4/4 < -0.1 and x < 0", to = "y^2/2 - x^2/2 + x^4/4 < -0.1 and x > 0", switching = "on" }
-"#,
-    );
+    let inside = |side: &str| format!("y^2/2 - x^2/2 + x^4/4 < -0.1 and x {side} 0");
+    let (left, right) = (inside("<"), inside(">"));
+    let [there, back] = between(&well(0.06, [2.1, 1.8], 56, [&left, &right]));
     println!(
         "{:.5e} ± {:.1e} and back {:.5e} ± {:.1e}",
         there.0, there.1, back.0, back.1

@@ -1,11 +1,12 @@
 //! What the live page asks for: densities at any values of the parameters, changes between two values, sample paths, a
-//! sweep file.
+//! sweep file, the page of an edited one.
 //!
 //! Requests come in lanes with rising tickets: a newer one of a lane makes the older ones stale. What waits is dropped,
 //! what is being solved is cancelled. Solves are warm: sessions are kept for the parameters that do not move.
 
 mod ask;
 mod bound;
+mod edit;
 mod lanes;
 mod mapping;
 mod paths;
@@ -75,6 +76,8 @@ enum Stop {
 #[derive(Debug, Serialize)]
 struct LivePage<'a> {
     live: bool,
+    /// The sweep file that its editor begins with.
+    typed: String,
     /// Axes of a state.
     dimension: usize,
     #[serde(flatten)]
@@ -129,6 +132,7 @@ impl Live {
         };
         let told = LivePage {
             live: true,
+            typed: Self::typed(sweep),
             dimension: sweep.problem.space().dimension(),
             scene: &Scene::new(sweep, &[]),
             plane: PlaneScene::new(sweep),

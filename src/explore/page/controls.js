@@ -194,7 +194,7 @@ const drag = (canvas, act, tap = null) => {
 
 /** Keys; what is typed into a field, and what a control does with a key itself, is left alone. */
 const press = (page, event) => {
-  if (event.ctrlKey || event.metaKey || event.altKey || $("keys").open) return;
+  if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
   const { target } = event;
   const writes = target.matches("input[type=text], select, textarea");
   const acts = target.matches("button, summary, input[type=checkbox], a");

@@ -8,6 +8,7 @@ const start = async () => {
   if (told.live) {
     buildParameters(page);
     connectPaths(page);
+    connectEditor(page);
   }
   else if (told.plane) buildSecond(page);
   connect(page);

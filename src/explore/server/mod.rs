@@ -2,6 +2,7 @@
 
 mod guard;
 mod http;
+mod systems;
 
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -14,6 +15,7 @@ use super::live::Live;
 use crate::cancellation::Cancellation;
 use guard::Guard;
 use http::{Request, Response};
+use systems::Systems;
 
 /// Connections that are served side by side. A further one takes the place of that which has been without a token for
 /// longest; where all have shown theirs, it is closed at once.
@@ -41,8 +43,7 @@ const NAP: Duration = Duration::from_millis(4);
 pub struct LiveServer {
     listener: TcpListener,
     guard: Guard,
-    live: Live,
-    page: String,
+    systems: Systems,
 }
 
 impl LiveServer {
@@ -56,12 +57,10 @@ impl LiveServer {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(taken)?;
         listener.set_nonblocking(true).map_err(taken)?;
         let port = listener.local_addr().map_err(taken)?.port();
-        let live = Live::new(sweep);
         Ok(Self {
             listener,
             guard: Guard::new(port)?,
-            page: live.page()?,
-            live,
+            systems: Systems::new(Live::new(sweep))?,
         })
     }
 
@@ -100,7 +99,7 @@ impl LiveServer {
                     active.fetch_sub(1, Ordering::SeqCst);
                 }
             }
-            self.live.stop();
+            self.systems.stop();
         });
     }
 
@@ -122,16 +121,26 @@ impl LiveServer {
     }
 
     fn respond(&self, request: &Request, known: &dyn Fn()) -> Result<Response, Response> {
-        let asked = self.guard.admit(request)?;
+        let path = self.guard.admit(request)?;
         known();
-        let answer: fn(&Live, &[u8]) -> Vec<u8> = match (request.method.as_str(), asked) {
-            ("GET", "") => return Ok(Response::html(&self.page)),
-            (_, "solve") => Live::solve,
-            (_, "locate") => Live::locate,
-            (_, "sweep-file") => Live::sweep_file,
-            (_, "paths") => Live::paths,
-            (_, "map") => Live::map,
-            (_, "map-progress") => Live::map_progress,
+        let gone = || {
+            Response::refused(
+                404,
+                "there is nothing of this name, or newer systems have taken its place",
+            )
+        };
+        let (shown, asked) = self.systems.of(path).ok_or_else(gone)?;
+        let edit = |live: &Live, body: &[u8]| live.edit(body, |live| self.systems.add(live));
+        let answer: &dyn Fn(&Live, &[u8]) -> Vec<u8> = match (request.method.as_str(), asked) {
+            ("GET", "") => return Ok(Response::html(&shown.page)),
+            (_, "edit") => &edit,
+            (_, "starts") => &Live::starts,
+            (_, "solve") => &Live::solve,
+            (_, "locate") => &Live::locate,
+            (_, "sweep-file") => &Live::sweep_file,
+            (_, "paths") => &Live::paths,
+            (_, "map") => &Live::map,
+            (_, "map-progress") => &Live::map_progress,
             (_, "") => return Err(Response::refused(405, "this can only be read")),
             _ => return Err(Response::refused(404, "there is nothing of this name")),
         };
@@ -141,7 +150,7 @@ impl LiveServer {
         if request.header("content-type") != Some("application/json") {
             return Err(Response::refused(400, "this takes JSON"));
         }
-        Ok(Response::json(answer(&self.live, &request.body)))
+        Ok(Response::json(answer(&shown.live, &request.body)))
     }
 }
 

@@ -58,7 +58,7 @@ pub(super) fn add_slow_modes(
             masses: density.unknowns,
             closed,
         };
-        let (settings, wanted) = ((&generator, &rates), wanted.max(1));
+        let settings = (&generator, &rates);
         slow_modes(system, space, wanted, steady, settings, cancellation)
     };
     let found = match density.map(solve) {

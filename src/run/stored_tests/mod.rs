@@ -230,6 +230,39 @@ fn what_was_written_is_read_bit_for_bit() {
     }
 }
 
+#[test]
+fn a_value_is_a_file_in_small_stores_and_where_few_values_have_numbers() {
+    for (count, of_all) in [(3, vec!["0", "1", "2"]), (40, vec!["0"])] {
+        let kinked = |index: usize| usize::from(index == 2);
+        let points: Vec<Point> = (0..count)
+            .map(|index| point(index as f64, None, kinked(index)))
+            .collect();
+        let stored: Vec<_> = (points.iter())
+            .map(|point| (point.value, &point.densities[..], &[][..]))
+            .collect();
+        let folder = tempfile::tempdir().unwrap();
+        let store = folder.path().join("store");
+        write_store(&store, &coulomb(), &stored).unwrap();
+        let chunks = |array: &str| {
+            let names = std::fs::read_dir(store.join(array).join("c")).unwrap();
+            let names = names.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+            let mut names: Vec<String> = names.collect();
+            names.sort();
+            names
+        };
+        for array in ["p_y", "p_y_error", "p_xy", "p_xy_second"] {
+            assert_eq!(chunks(array), of_all, "{array} at {count} values");
+        }
+        assert_eq!(chunks("p_xy_kink_0"), ["2"], "one of {count} values");
+        let kinks = StoredArray::open(&store.join("p_xy_kink_0")).unwrap();
+        assert_eq!(
+            (kinks.shape()[0], kinks.row(1).unwrap()),
+            (count as u64, vec![])
+        );
+        assert_eq!(kinks.row(2).unwrap().len(), 3);
+    }
+}
+
 /// Stores of early versions had a chunk a value, of eight replicates at most, and room for more values.
 fn as_early_versions_did(store: &std::path::Path) {
     let names = std::fs::read_dir(store).unwrap().flatten();

@@ -1,6 +1,7 @@
 //! How a key's value gets into a [`Draft`] and out of it.
 
 use super::super::draft::{Draft, EndKind};
+use super::super::names::nearest_name;
 use super::super::value::Plain;
 use super::in_file::Formulas;
 
@@ -64,17 +65,25 @@ macro_rules! of_axis {
 /// The word for an axis that closes on itself after 2π.
 pub(super) const PERIODIC: &str = "periodic";
 
+/// What happens at an end of an axis, where that is said in a word.
+pub(in crate::sweep_file) fn end_of(plain: &Plain) -> Option<EndKind> {
+    let mut all = EndKind::ALL.into_iter();
+    all.find(|kind| plain.text() == Some(kind.name()))
+}
+
 /// What happens at both ends of an axis, where that is said in words.
 pub(super) fn ends_of(plain: &Plain) -> Option<[EndKind; 2]> {
-    let kind = |plain: &Plain| {
-        let mut all = EndKind::ALL.into_iter();
-        all.find(|kind| plain.text() == Some(kind.name()))
-    };
     match plain.items() {
-        Some([lower, upper]) => Some([kind(lower)?, kind(upper)?]),
+        Some([lower, upper]) => Some([end_of(lower)?, end_of(upper)?]),
         Some(_) => None,
-        None => kind(plain).map(|both| [both; 2]),
+        None => end_of(plain).map(|both| [both; 2]),
     }
+}
+
+/// The word for an end of an axis, or for the whole axis, that was perhaps meant.
+pub(in crate::sweep_file) fn nearest_bound(text: &str) -> Option<&'static str> {
+    let words = EndKind::ALL.into_iter().map(EndKind::name);
+    nearest_name(text, words.chain([PERIODIC]))
 }
 
 /// Bounds of an axis: two formulas, or words for its ends, or the word for an angle.

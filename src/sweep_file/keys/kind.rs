@@ -2,7 +2,7 @@
 
 use super::super::names::list;
 use super::super::value::Plain;
-use super::field::{PERIODIC, ends_of};
+use super::field::{PERIODIC, end_of, ends_of};
 use super::in_file::AUTO;
 use crate::figure::FigureWidth;
 use crate::system::registry;
@@ -190,8 +190,12 @@ impl Kind {
                 None => Self::Formula.holds(plain),
             },
             Self::Bounds => match plain.items() {
+                // A word for one end stands beside a word for the other, not beside a formula.
                 Some(items) => {
-                    items.len() == 2 && items.iter().all(|item| Self::Formula.holds(item))
+                    let is_end = |item: &&Plain| end_of(item).is_some();
+                    items.len() == 2
+                        && items.iter().all(|item| Self::Formula.holds(item))
+                        && items.iter().filter(is_end).count() != 1
                 }
                 None => plain.text() == Some(PERIODIC) || ends_of(plain).is_some(),
             },

@@ -10,7 +10,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub(super) use field::Field;
+pub(super) use field::{Field, end_of, nearest_bound};
 pub(super) use kind::{Kind, models};
 pub(super) use table::KEYS;
 

@@ -11,10 +11,13 @@ mod exponent;
 #[cfg(feature = "figures")]
 mod figure_names;
 mod figures;
+mod given_regions;
 mod levels;
 mod map;
 mod method;
 mod modes_of;
+mod moments;
+mod passage_fields;
 mod passages;
 mod quantities;
 mod relaxation;

@@ -1,27 +1,17 @@
 //! Regions and questions of first passage as a file has them, with the place of everything that is wrong with them.
 
+use super::given_regions::{Given, diagnostic, is_basin, refuse, region};
+use super::passage_fields::{GivenField, fields};
 use crate::density::Observable;
 use crate::formula::language::check_name;
-use crate::sweep_file::diagnostic::{Diagnostic, Place};
+use crate::sweep_file::diagnostic::Diagnostic;
 use crate::sweep_file::draft::{Draft, MethodKind, PassageDraft};
-use crate::sweep_file::formula_place::inside;
 use crate::sweep_file::names::quotable;
 use crate::sweep_file::reader::Reader;
-use crate::system::{
-    FieldKind, FieldQuestion, Model, PassageQuestion, PassageStart, Region, RegionError, regions,
-};
+use crate::system::{Model, PassageQuestion, PassageStart, Region, regions};
 
 /// The word for a start that is spread as the steady state is.
 pub(super) const DENSITY: &str = "density";
-
-/// An inequality as it was given.
-struct Given {
-    name: String,
-    text: String,
-    place: Place,
-    /// Whether it is made of others, which say what is wrong with them.
-    is_joined: bool,
-}
 
 /// Checks `[regions]` and `[passage]`: the regions with names, and the questions.
 pub(super) fn read(
@@ -259,7 +249,11 @@ fn ends(
     if passage.switching == Some(true) && !may_switch(reader, draft, passage, &start) {
         return None;
     }
-    let fields = fields(reader, (draft, passage), given, (until, &exits, &start))?;
+    let from = match start {
+        GivenStart::Region(from) => Some(from),
+        GivenStart::State(_) | GivenStart::Density => None,
+    };
+    let fields = fields(reader, (draft, passage), given, (until, &exits, from))?;
     Some(Ends {
         until,
         exits,
@@ -295,133 +289,6 @@ fn may_switch(
     true
 }
 
-/// A field of a passage, regions by their numbers.
-struct GivenField {
-    name: String,
-    kind: FieldKind,
-    until: usize,
-    exits: Vec<usize>,
-    part: Option<usize>,
-}
-
-impl GivenField {
-    fn question(self, read: &[Region]) -> FieldQuestion {
-        FieldQuestion {
-            name: self.name,
-            kind: self.kind,
-            until: read[self.until].clone(),
-            exits: self
-                .exits
-                .into_iter()
-                .map(|part| read[part].clone())
-                .collect(),
-            part: self.part,
-        }
-    }
-}
-
-/// The fields of a passage: by the generator, and a committor between regions; `None` where they cannot be asked for.
-fn fields(
-    reader: &mut Reader<'_>,
-    (draft, passage): (&Draft, &PassageDraft),
-    given: &mut Vec<Given>,
-    (until, exits, start): (usize, &[usize], &GivenStart),
-) -> Option<Vec<GivenField>> {
-    let (name, mut all) = (passage.name.as_str(), Vec::new());
-    let asked = passage.fields.iter().flatten();
-    if asked.clone().next().is_some() && draft.method.kind != MethodKind::Generator {
-        let method = draft.method.kind.name();
-        let title = format!("fields of passages are worked out by `generator`, not by `{method}`");
-        let remedy = "set `method.kind = \"generator\"`, or leave `fields` out";
-        refuse(reader, name, title, remedy);
-        return None;
-    }
-    for kind in FieldKind::ALL
-        .into_iter()
-        .filter(|kind| asked.clone().any(|one| one == kind))
-    {
-        let array = |of: &str| format!("{name}_{of}");
-        let mut add = |name, (until, exits): (usize, &[usize]), part| {
-            let exits = exits.to_vec();
-            all.push(GivenField {
-                name,
-                kind,
-                until,
-                exits,
-                part,
-            });
-        };
-        match (kind, start) {
-            (FieldKind::MeanTime, _) => add(array("mean_time"), (until, &[]), None),
-            (FieldKind::Committor, _) if !exits.is_empty() => {
-                for part in 0..exits.len() {
-                    let of = format!("{}_committor", exit_label(name, part, given, exits));
-                    add(array(&of), (until, exits), Some(part));
-                }
-            }
-            (FieldKind::Committor, &GivenStart::Region(from)) => {
-                let (one, other) = (&given[from].text, &given[until].text);
-                if is_basin(one) || is_basin(other) {
-                    let title =
-                        format!("passage `{name}` asks for a committor between basins of peaks");
-                    refuse(reader, name, title, "give inequalities as `from` and `to`");
-                    return None;
-                }
-                let either = format!("({one}) or ({other})");
-                let own = ("from", format!("{name}_from_or_to"));
-                let both = region(reader, given, name, own, &either);
-                given[both].is_joined = true;
-                add(array("committor"), (both, &[from, until]), Some(1));
-            }
-            (FieldKind::Committor, _) => {
-                let title =
-                    format!("passage `{name}` asks for a committor, and is not between regions");
-                let remedy = "give the two regions as `from` and `to`, or as a list of `until`";
-                refuse(reader, name, title, remedy);
-                return None;
-            }
-        }
-    }
-    Some(all)
-}
-
-/// Whether a region is the basin of a peak, as `peak 2 of x` is.
-fn is_basin(text: &str) -> bool {
-    let words: Vec<&str> = text.split_whitespace().collect();
-    matches!(words[..], ["peak", _, "of", _])
-}
-
-/// What arrays call a region of several that end a passage.
-fn exit_label(passage: &str, part: usize, given: &[Given], exits: &[usize]) -> String {
-    let known = &given[exits[part]].name;
-    match *known == PassageQuestion::exit_name(passage, part) {
-        true => (part + 1).to_string(),
-        false => known.clone(),
-    }
-}
-
-/// The number of a region that a passage names, or gives as an inequality.
-fn region(
-    reader: &Reader<'_>,
-    given: &mut Vec<Given>,
-    passage: &str,
-    (word, name): (&str, String),
-    text: &str,
-) -> usize {
-    if let Some(known) = given.iter().position(|one| one.name == text.trim()) {
-        return known;
-    }
-    let place = reader.place(&["passage", passage, word]);
-    let whole = &reader.document().root.place;
-    given.push(Given {
-        name,
-        text: text.to_owned(),
-        place: place.unwrap_or(whole).clone(),
-        is_joined: false,
-    });
-    given.len() - 1
-}
-
 /// The state in which a passage starts.
 fn state(reader: &mut Reader<'_>, passage: &PassageDraft, model: &Model) -> Option<Vec<f64>> {
     let known = |axis: &str| passage.start.iter().find(|(name, _)| name == axis);
@@ -451,22 +318,4 @@ fn state(reader: &mut Reader<'_>, passage: &PassageDraft, model: &Model) -> Opti
         );
     }
     found
-}
-
-fn refuse(reader: &mut Reader<'_>, passage: &str, title: String, remedy: &str) {
-    let diagnostic = Diagnostic::new(title).remedy(remedy);
-    let place = reader.key_place(&["passage", passage]);
-    reader.report(diagnostic.at(place, "this passage"));
-}
-
-fn diagnostic(reader: &Reader<'_>, one: &Given, error: &RegionError) -> Diagnostic {
-    let diagnostic = Diagnostic::new(format!("region `{}`: {}", one.name, error.fault));
-    let diagnostic = match &error.span {
-        Some(span) => {
-            let sources = &reader.document().sources;
-            diagnostic.at(&inside(sources, &one.place, span), "here")
-        }
-        None => diagnostic.at(&one.place, "this region"),
-    };
-    diagnostic.advice(error.fault.allowed(), error.fault.remedy())
 }

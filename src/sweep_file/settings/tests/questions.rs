@@ -115,6 +115,16 @@ fn walls_stand_where_cells_end_and_are_written_again() {
     assert!(unknown.contains("no axis `z`"), "{unknown}");
     let word = refused(&WALLED.replace("open", "closed"), &[]);
     assert!(word.contains("closed"), "{word}");
+    for (given, misspelt, meant) in [
+        (pair, r#""reflectin""#, "reflecting"),
+        (pair, r#""perodic""#, "periodic"),
+        ("\"open\"", r#""opne""#, "open"),
+        ("\"reflecting\"", r#""reflectng""#, "reflecting"),
+    ] {
+        let told = refused(&WALLED.replace(given, misspelt), &[]);
+        let meant = format!("did you mean `{meant}`?");
+        assert!(told.contains(&meant), "{misspelt}: {told}");
+    }
 }
 
 #[cfg(feature = "figures")]

@@ -1,0 +1,63 @@
+//! Regions as passages give them: by a name of `[regions]`, or as an inequality of their own.
+
+use crate::sweep_file::diagnostic::{Diagnostic, Place};
+use crate::sweep_file::formula_place::inside;
+use crate::sweep_file::reader::Reader;
+use crate::system::RegionError;
+
+/// An inequality as it was given.
+pub(super) struct Given {
+    pub(super) name: String,
+    pub(super) text: String,
+    pub(super) place: Place,
+    /// Whether it is made of others, which say what is wrong with them.
+    pub(super) is_joined: bool,
+}
+
+/// Whether a region is the basin of a peak, as `peak 2 of x` is.
+pub(super) fn is_basin(text: &str) -> bool {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    matches!(words[..], ["peak", _, "of", _])
+}
+
+/// The number of a region that a passage names, or gives as an inequality.
+pub(super) fn region(
+    reader: &Reader<'_>,
+    given: &mut Vec<Given>,
+    passage: &str,
+    (word, name): (&str, String),
+    text: &str,
+) -> usize {
+    if let Some(known) = given.iter().position(|one| one.name == text.trim()) {
+        return known;
+    }
+    let place = reader.place(&["passage", passage, word]);
+    let whole = &reader.document().root.place;
+    given.push(Given {
+        name,
+        text: text.to_owned(),
+        place: place.unwrap_or(whole).clone(),
+        is_joined: false,
+    });
+    given.len() - 1
+}
+
+/// Reports what is wrong with a passage.
+pub(super) fn refuse(reader: &mut Reader<'_>, passage: &str, title: String, remedy: &str) {
+    let diagnostic = Diagnostic::new(title).remedy(remedy);
+    let place = reader.key_place(&["passage", passage]);
+    reader.report(diagnostic.at(place, "this passage"));
+}
+
+/// What is wrong with an inequality, at its place.
+pub(super) fn diagnostic(reader: &Reader<'_>, one: &Given, error: &RegionError) -> Diagnostic {
+    let diagnostic = Diagnostic::new(format!("region `{}`: {}", one.name, error.fault));
+    let diagnostic = match &error.span {
+        Some(span) => {
+            let sources = &reader.document().sources;
+            diagnostic.at(&inside(sources, &one.place, span), "here")
+        }
+        None => diagnostic.at(&one.place, "this region"),
+    };
+    diagnostic.advice(error.fault.allowed(), error.fault.remedy())
+}
