@@ -47,7 +47,9 @@ mod events;
 mod finding;
 mod fluctuations;
 mod follow;
+mod found;
 mod grid;
+mod in_doubt;
 mod jump;
 mod label;
 mod levels;
@@ -68,6 +70,7 @@ mod source;
 mod span;
 mod state_field;
 mod sweep;
+mod swift;
 mod walk;
 mod wanted;
 
