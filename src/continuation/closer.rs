@@ -62,17 +62,13 @@ impl<'p, 'a> Closer<'p, 'a> {
         cancellation: &'a Cancellation,
     ) -> Self {
         let of_sweep = walk.points.len() as f64;
-        let subject = work.source().subject();
-        let ratio = match subject.cell_check {
-            CellCheck::OnFinerCells { ratio } => ratio,
-            CellCheck::Impossible | CellCheck::Needless => 1.0,
-        };
+        let observables = &work.source().subject().observables;
         let cells = work.source().cells().map_or(f64::INFINITY, |n| n as f64);
         Self {
             work,
             span,
             options,
-            in_doubt: InDoubt::of(walk, &subject.observables, (span.step, ratio)),
+            in_doubt: InDoubt::of(walk, observables, span.step),
             last: Vec::new(),
             seen: Vec::new(),
             at_ends: Vec::new(),
@@ -125,7 +121,7 @@ impl<'p, 'a> Closer<'p, 'a> {
             let ends = self.ends(&found, of, stretch);
             let is_better = found.is_better(self.in_doubt.points(), of.0, stretch);
             if let Some(ends) = ends.filter(|_| is_better) {
-                return self.believed(found, (of, stretch, ends), times, rows);
+                return self.believed(found, (of, stretch, ends), rows);
             }
             stretch = self.in_doubt.next_wider(stretch, rows, of.1)?;
         }
@@ -137,10 +133,9 @@ impl<'p, 'a> Closer<'p, 'a> {
         &mut self,
         found: Found,
         (of, stretch, ends): (Watched, [f64; 2], [Signature; 2]),
-        times: u8,
         rows: &[Located],
     ) -> Option<(CloserLook, Vec<Seen>)> {
-        self.in_doubt.settle(&found, (of.0, stretch), times);
+        self.in_doubt.settle(&found, (of.0, stretch));
         let seen = found.seen(of.1);
         let mut look = CloserLook {
             observable: of.1,

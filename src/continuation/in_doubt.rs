@@ -1,12 +1,11 @@
 //! Where finer cells may tell more than those of a sweep.
 //!
 //! Around rows that are not located; where the slope along a crest is level within its error, so that a pair of peak and
-//! saddle may be there; where cells are wide, and so are not sure that nothing is there; and where a peak moves fast.
+//! saddle may be there; and where cells are wide, and so are not sure that nothing is there.
 
 use super::found::Found;
 use super::label::Located;
 use super::locate::has_wide_cells;
-use super::swift::Swift;
 use super::walk::Walk;
 use super::{Doubt, Point};
 use crate::density::Observable;
@@ -20,37 +19,24 @@ pub(super) struct InDoubt<'p> {
     points: Vec<&'p Point>,
     /// Distance between given values.
     step: f64,
-    /// How many times as many cells an axis has once it is refined.
-    ratio: f64,
     /// Places of observables, and values, at which it is not known whether a pair of peak and saddle is there.
     unsure: Vec<(usize, f64)>,
     /// The same where cells are wide.
     wide: Vec<(usize, f64)>,
-    /// Where a peak moves fast, and a pair may hide that is nearer than cells can tell.
-    swift: Vec<Swift>,
 }
 
-/// How often cells are refined at most where nothing is counted, and a peak does not move fast.
+/// How often cells are refined at most where nothing is counted.
 const MOST_TIMES: u8 = 3;
 
-/// Cells between two peaks from which on they are told apart.
-const TOLD_APART: f64 = 6.0;
-
 impl<'p> InDoubt<'p> {
-    /// Of a sweep that watches these, with so long a step, on cells that are refined by this ratio.
-    pub(super) fn of(
-        walk: &'p Walk<'_>,
-        observables: &[Observable],
-        (step, ratio): (f64, f64),
-    ) -> Self {
+    /// Of a sweep that watches these, with so long a step.
+    pub(super) fn of(walk: &'p Walk<'_>, observables: &[Observable], step: f64) -> Self {
         let solved = walk.points.iter();
         Self {
             points: solved.filter(|one| !one.detections.is_empty()).collect(),
             step,
-            ratio,
             unsure: walk.unsure.clone(),
             wide: in_wide_cells(&walk.points, observables),
-            swift: walk.swift.clone(),
         }
     }
 
@@ -66,11 +52,7 @@ impl<'p> InDoubt<'p> {
             .filter(|row| row.observable == of.1 && is_of_cells(row));
         let unsure = self.unsure.iter().chain(&self.wide);
         let unsure = unsure.filter(|one| one.0 == of.0 && times <= MOST_TIMES);
-        let swift = self.swift.iter();
-        let swift = swift.filter(|one| one.observable == of.0 && self.tell_apart(one, times));
-        let in_doubt = (in_doubt.map(hull))
-            .chain(unsure.map(|one| [one.1; 2]))
-            .chain(swift.map(|one| one.beside));
+        let in_doubt = (in_doubt.map(hull)).chain(unsure.map(|one| [one.1; 2]));
         let mut in_doubt: Vec<[f64; 2]> = in_doubt.collect();
         in_doubt.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let mut found: Vec<[f64; 2]> = Vec::new();
@@ -86,35 +68,16 @@ impl<'p> InDoubt<'p> {
         found
     }
 
-    /// Forgets of a stretch what cells that are refined so many times have settled there: whether a pair is there, where
-    /// they are not wide; that something is there on wide ones.
-    pub(super) fn settle(
-        &mut self,
-        found: &Found,
-        (place, [lower, upper]): (usize, [f64; 2]),
-        times: u8,
-    ) {
+    /// Forgets of a stretch what finer cells have settled there: whether a pair is there, where they are not wide; that
+    /// something is there on wide ones.
+    pub(super) fn settle(&mut self, found: &Found, (place, [lower, upper]): (usize, [f64; 2])) {
         let is_there = |one: &(usize, f64)| one.0 == place && (lower..=upper).contains(&one.1);
         if !found.is_wide || !found.rows.is_empty() {
             self.wide.retain(|one| !is_there(one));
         }
-        if found.is_wide {
-            return;
-        }
-        if found.is_sure {
+        if found.is_sure && !found.is_wide {
             self.unsure.retain(|one| !is_there(one));
         }
-        let is_settled = |one: &Swift| {
-            let is_inside = lower <= one.ends[0] && one.ends[1] <= upper;
-            one.observable == place && is_inside && self.tell_apart(one, times)
-        };
-        let swift = self.swift.iter().filter(|one| !is_settled(one));
-        self.swift = swift.cloned().collect();
-    }
-
-    /// Whether two peaks as far apart as one seems to move are told apart on cells that are refined so many times.
-    fn tell_apart(&self, swift: &Swift, times: u8) -> bool {
-        swift.cells * self.ratio.powi(i32::from(times)) >= TOLD_APART
     }
 
     /// A stretch that reaches a step farther to either side, with all of the rows that lie in a part of it; `None` where
@@ -171,15 +134,23 @@ impl<'p> InDoubt<'p> {
     }
 }
 
-/// Places of joint densities, and values, at which cells are wide.
+/// Places of joint densities, and values, at which cells are wide; none where there is a centre of symmetry, at which
+/// indicators are read.
 fn in_wide_cells(points: &[Point], observables: &[Observable]) -> Vec<(usize, f64)> {
+    let is_free = |point: &Point, place: usize| {
+        let density = point.densities.get(place);
+        density.is_some_and(|one| one.structure.centre.is_none())
+    };
     let joint = observables.iter().enumerate();
     let joint: Vec<usize> = (joint.filter(|(_, one)| one.axes().len() > 1))
         .map(|(place, _)| place)
         .collect();
     let wide = points.iter().filter(|point| has_wide_cells(point));
-    wide.flat_map(|point| joint.iter().map(|&place| (place, point.value)))
-        .collect()
+    wide.flat_map(|point| {
+        let places = joint.iter().filter(|place| is_free(point, **place));
+        places.map(|&place| (place, point.value))
+    })
+    .collect()
 }
 
 /// Where a row may lie.

@@ -70,7 +70,6 @@ mod source;
 mod span;
 mod state_field;
 mod sweep;
-mod swift;
 mod walk;
 mod wanted;
 

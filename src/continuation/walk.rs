@@ -12,7 +12,6 @@ use super::live::Live;
 use super::locate::label_points;
 use super::segment::{Segment, SolvedPoint, Work};
 use super::span::Span;
-use super::swift::{Swift, WORTH_A_LOOK, swift};
 use super::wanted::Search;
 use super::{CellCheck, DensitySource, Goal, Label, Point, SweepError};
 use crate::cancellation::Cancellation;
@@ -37,8 +36,6 @@ pub(super) struct Walk<'a> {
     flanks: Vec<Flanks>,
     /// Where cells cannot tell whether a pair of peak and saddle is there: places of observables, and values.
     pub(super) unsure: Vec<(usize, f64)>,
-    /// Where a peak moves fast, and a pair may hide.
-    pub(super) swift: Vec<Swift>,
 }
 
 impl<'a> Walk<'a> {
@@ -61,11 +58,9 @@ impl<'a> Walk<'a> {
             points: Vec::new(),
             flanks: Vec::new(),
             unsure: Vec::new(),
-            swift: Vec::new(),
         };
         walk.walk()?;
         walk.narrow(MOST_EXTRA.max(MOST_EXTRA_A_VALUE * values.len()))?;
-        walk.note_swift(values);
         // Checks are solved in sessions of their own.
         walk.segments.clear();
         Ok(walk)
@@ -122,15 +117,6 @@ impl<'a> Walk<'a> {
         let value = solved.point.value;
         self.unsure
             .extend(solved.unsure.iter().map(|&place| (place, value)));
-    }
-
-    /// Notes where a peak moves fast by the given values: on cells that blur a pair into one peak it moves evenly
-    /// between them.
-    fn note_swift(&mut self, values: &[f64]) {
-        let is_given = |one: &&Point| !one.detections.is_empty() && values.contains(&one.value);
-        let solved: Vec<&Point> = self.points.iter().filter(is_given).collect();
-        let fast = [1, 2, 3].into_iter().flat_map(|gaps| swift(&solved, gaps));
-        self.swift = fast.filter(|one| one.cells > WORTH_A_LOOK).collect();
     }
 
     /// Solves further values, at most so many, until every change is as narrow as wanted, or as the data allow.

@@ -6,7 +6,6 @@ use super::dips::{self, Flanks};
 use super::follow::{Course, Crossing};
 use super::root::{beyond_doubt, next_value, root};
 use super::span::Span;
-use super::swift::swift;
 use super::{Goal, Point, levels};
 use crate::system::MeasureLevel;
 use crate::topology::Detector;
@@ -31,9 +30,7 @@ impl Search<'_> {
             .filter(|point| !point.detections.is_empty())
             .collect();
         let tolerance = self.options.tolerance;
-        let dip = dips::at_centre(&solved, tolerance)
-            .or_else(|| self.dip_on_flanks())
-            .or_else(|| in_swift(&solved, tolerance));
+        let dip = dips::at_centre(&solved, tolerance).or_else(|| self.dip_on_flanks());
         if let Some(dip) = dip.filter(|value| self.is_new(value)) {
             return vec![dip];
         }
@@ -147,11 +144,4 @@ impl Search<'_> {
             .into_iter()
             .collect()
     }
-}
-
-/// The middle of a gap in which a peak of a joint density moves fast, by more than a cell.
-fn in_swift(solved: &[&Point], tolerance: f64) -> Option<f64> {
-    let fast = swift(solved, 1).into_iter();
-    let mut wide = fast.filter(|one| one.cells > 1.0 && one.ends[1] - one.ends[0] > tolerance);
-    wide.next().map(|one| 0.5 * (one.ends[0] + one.ends[1]))
 }
