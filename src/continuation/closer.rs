@@ -10,7 +10,8 @@
 //! grids may agree by chance: what they show is believed where a look before, on coarser cells, has shown the same, and
 //! each row has moved by no more than order one allows. Else values are told, and that more cells are needed.
 
-use super::doubt::MOST_TIMES;
+use super::found::{Found, Seen};
+use super::in_doubt::{InDoubt, Watched};
 use super::label::{Label, Located};
 use super::live::{FACTORS, refined, work_of_factors};
 use super::locate::has_wide_cells;
@@ -18,9 +19,9 @@ use super::look::{CloserLook, counted, with_rows};
 use super::segment::Work;
 use super::span::{Span, evenly_spaced};
 use super::walk::Walk;
-use super::{CellCheck, Doubt, Goal, Point, Want};
+use super::{CellCheck, Goal, Want};
 use crate::cancellation::Cancellation;
-use crate::density::{EstimatedDensity, Observable};
+use crate::density::Observable;
 use crate::topology::Signature;
 
 /// What is looked at closer, and with what.
@@ -28,12 +29,13 @@ pub(super) struct Closer<'p, 'a> {
     work: &'a Work<'a>,
     span: Span,
     options: &'p Goal,
-    /// Of the sweep, with densities; ascending.
-    points: Vec<&'p Point>,
-    /// Places of observables, and values, at which it is not known whether a pair of peak and saddle is there.
-    unsure: Vec<(usize, f64)>,
+    in_doubt: InDoubt<'p>,
     /// The last look at each observable and stretch, with the rows that it found.
     last: Vec<CloserLook>,
+    /// What looks whose rows took the place of others count at the values that they solved, the newest last.
+    seen: Vec<(Observable, f64, Signature)>,
+    /// What looks count at the ends of their stretches.
+    at_ends: Vec<(Observable, [f64; 2], [Signature; 2])>,
     cancellation: &'a Cancellation,
     /// Work left, in solves of the sweep.
     left: f64,
@@ -44,6 +46,9 @@ const FEWEST: usize = 5;
 
 /// Values that are solved within a stretch beyond its given ones, about.
 const BEYOND: f64 = 10.0;
+
+/// How often cells are refined at most: work that is allowed ends the looks before.
+const MOST_LOOKS: u8 = 8;
 
 /// Work that is worth an answer whatever the sweep took, in cells that are solved: those of 200 values on 100 × 100
 /// cells.
@@ -56,19 +61,17 @@ impl<'p, 'a> Closer<'p, 'a> {
         walk: &'p Walk<'_>,
         cancellation: &'a Cancellation,
     ) -> Self {
-        let points = &walk.points;
-        let of_sweep = points.len() as f64;
+        let of_sweep = walk.points.len() as f64;
+        let observables = &work.source().subject().observables;
         let cells = work.source().cells().map_or(f64::INFINITY, |n| n as f64);
         Self {
             work,
             span,
             options,
-            points: points
-                .iter()
-                .filter(|one| !one.detections.is_empty())
-                .collect(),
-            unsure: walk.unsure.clone(),
+            in_doubt: InDoubt::of(walk, observables, span.step),
             last: Vec::new(),
+            seen: Vec::new(),
+            at_ends: Vec::new(),
             cancellation,
             left: options.effort * of_sweep.max(WORTH / cells),
         }
@@ -81,17 +84,22 @@ impl<'p, 'a> Closer<'p, 'a> {
             self.work.source().subject().cell_check,
             CellCheck::OnFinerCells { .. }
         );
-        if !is_wanted || !is_possible || self.points.len() < 2 {
+        if !is_wanted || !is_possible || self.in_doubt.points().len() < 2 {
             return (labels, Vec::new());
         }
         let mut looks = Vec::new();
         let labels = with_rows(labels, |rows| {
-            for times in 1..=MOST_TIMES {
+            for times in 1..=MOST_LOOKS {
                 let observables = self.work.source().subject().observables.iter();
                 for (place, &observable) in observables.enumerate() {
-                    for stretch in self.stretches(rows, (place, observable)) {
+                    for stretch in self.in_doubt.stretches(rows, (place, observable), times) {
                         let found = self.look((place, observable), stretch, times, rows);
-                        looks.extend(found.filter(|look| look.replace(rows)));
+                        if let Some((look, seen)) = found
+                            && look.replace(rows)
+                        {
+                            self.seen.extend(seen);
+                            looks.push(look);
+                        }
                     }
                 }
             }
@@ -103,43 +111,82 @@ impl<'p, 'a> Closer<'p, 'a> {
     /// counts there.
     fn look(
         &mut self,
-        of: (usize, Observable),
+        of: Watched,
         mut stretch: [f64; 2],
         times: u8,
         rows: &[Located],
-    ) -> Option<CloserLook> {
+    ) -> Option<(CloserLook, Vec<Seen>)> {
         for _ in 0..2 {
             let found = self.swept(of, stretch, times)?;
-            if let Some(ends) = found.continues(&self.points, of.0, stretch) {
-                let mut look = CloserLook {
-                    observable: of.1,
-                    stretch,
-                    ends,
-                    rows: found.rows,
-                };
-                let is_proven = !found.is_wide || self.converges(&look, rows);
-                let is_same = |one: &CloserLook| one.is_at(&look);
-                self.last.retain(|one| !is_same(one));
-                self.last.push(look.clone());
-                if found.is_sure && !found.is_wide {
-                    let [lower, upper] = stretch;
-                    let is_there =
-                        |one: &(usize, f64)| one.0 == of.0 && (lower..=upper).contains(&one.1);
-                    self.unsure.retain(|one| !is_there(one));
-                }
-                if !is_proven {
-                    look.doubt();
-                }
-                // That nothing happens is no more than what two grids may agree on by chance.
-                return (is_proven || !look.rows.is_empty()).then_some(look);
+            let ends = self.ends(&found, of, stretch);
+            let is_better = found.is_better(self.in_doubt.points(), of.0, stretch);
+            if let Some(ends) = ends.filter(|_| is_better) {
+                return self.believed(found, (of, stretch, ends), rows);
             }
-            let wider = self.wider(stretch, self.span.step);
-            if wider == stretch {
-                break;
-            }
-            stretch = self.around_rows(rows, of.1, wider);
+            stretch = self.in_doubt.next_wider(stretch, rows, of.1)?;
         }
         None
+    }
+
+    /// What is believed of what finer cells show of a stretch, between ends at which they are right.
+    fn believed(
+        &mut self,
+        found: Found,
+        (of, stretch, ends): (Watched, [f64; 2], [Signature; 2]),
+        rows: &[Located],
+    ) -> Option<(CloserLook, Vec<Seen>)> {
+        self.in_doubt.settle(&found, (of.0, stretch));
+        let seen = found.seen(of.1);
+        let mut look = CloserLook {
+            observable: of.1,
+            stretch,
+            ends,
+            rows: found.rows,
+        };
+        let is_proven = !found.is_wide || self.converges(&look, rows);
+        self.last.retain(|one| !one.is_at(&look));
+        self.last.push(look.clone());
+        if !is_proven {
+            look.doubt();
+        }
+        // That nothing happens is no more than what two grids may agree on by chance.
+        (is_proven || !look.rows.is_empty()).then_some((look, seen))
+    }
+
+    /// What the sweep counts at the ends of a stretch, if finer cells count the same, or what an earlier look whose rows
+    /// are kept has counted there. Where the sweep's cells are wide at its own end they are not sure of what is there:
+    /// finer ones are believed that are not, or that count what others have counted before.
+    fn ends(
+        &mut self,
+        found: &Found,
+        (place, observable): Watched,
+        stretch: [f64; 2],
+    ) -> Option<[Signature; 2]> {
+        let [below, above] = stretch.map(|value| found.counted(value));
+        let own = [below?, above?];
+        let points = self.in_doubt.points();
+        let [below, above] = stretch.map(|value| counted(points.iter().copied(), value, place));
+        let of_sweep = [below?, above?];
+        let is_known = self.at_ends.contains(&(observable, stretch, own));
+        self.at_ends.push((observable, stretch, own));
+        let is_free = |end: usize| {
+            let own = if end == 0 {
+                points.first()
+            } else {
+                points.last()
+            };
+            let is_wide = own.is_some_and(|one| one.value == stretch[end] && has_wide_cells(one));
+            is_wide && (is_known || !found.is_wide)
+        };
+        let small = 1e-6 * self.span.step;
+        let is_seen = |end: usize| {
+            let mut seen = self.seen.iter().rev();
+            let last =
+                seen.find(|one| one.0 == observable && (one.1 - stretch[end]).abs() <= small);
+            last.is_some_and(|one| one.2 == own[end])
+        };
+        let is_right = |end: usize| own[end] == of_sweep[end] || is_seen(end) || is_free(end);
+        (is_right(0) && is_right(1)).then_some(of_sweep)
     }
 
     /// Whether a look shows what was seen there on coarser cells, and each of its rows is nearer to the row seen then
@@ -162,12 +209,7 @@ impl<'p, 'a> Closer<'p, 'a> {
     }
 
     /// What finer cells show in a stretch; `None` where there are none, or no work is left for them.
-    fn swept(
-        &mut self,
-        (_, observable): (usize, Observable),
-        stretch: [f64; 2],
-        times: u8,
-    ) -> Option<Found> {
+    fn swept(&mut self, (_, observable): Watched, stretch: [f64; 2], times: u8) -> Option<Found> {
         let steps = ((stretch[1] - stretch[0]) / self.span.step).ceil() as usize;
         let values = evenly_spaced((stretch[0], stretch[1]), FEWEST.max(steps + 1));
         let each = self.cost(times);
@@ -229,136 +271,4 @@ impl<'p, 'a> Closer<'p, 'a> {
         let finer = ratio.powi(i32::from(times));
         (1.0 - FACTORS) * finer.powi(axes as i32) + work_of_factors(finer, axes)
     }
-
-    /// Stretches around the rows of an observable that finer cells may tell better, and around values at which they may
-    /// tell whether a pair is there, apart from each other.
-    fn stretches(&self, rows: &[Located], of: (usize, Observable)) -> Vec<[f64; 2]> {
-        let in_doubt = rows
-            .iter()
-            .filter(|row| row.observable == of.1 && is_of_cells(row));
-        let unsure = self.unsure.iter().filter(|one| one.0 == of.0);
-        let in_doubt = in_doubt.map(hull).chain(unsure.map(|one| [one.1; 2]));
-        let mut in_doubt: Vec<[f64; 2]> = in_doubt.collect();
-        in_doubt.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let mut found: Vec<[f64; 2]> = Vec::new();
-        for [lower, upper] in in_doubt {
-            let margin = (0.25 * (upper - lower)).max(0.5 * self.span.step);
-            let around = self.wider([lower, upper], margin);
-            let mut around = self.around_rows(rows, of.1, around);
-            while let Some(last) = found.pop_if(|last| last[1] >= around[0]) {
-                around = [last[0].min(around[0]), last[1].max(around[1])];
-            }
-            found.push(around);
-        }
-        found
-    }
-
-    /// The solved values that lie outside of a stretch by a margin, or the ends of the sweep.
-    fn wider(&self, [lower, upper]: [f64; 2], margin: f64) -> [f64; 2] {
-        let values = || self.points.iter().map(|point| point.value);
-        let ends = [
-            self.points[0].value,
-            self.points[self.points.len() - 1].value,
-        ];
-        let below = values().rfind(|value| *value <= lower - margin);
-        let above = values().find(|value| *value >= upper + margin);
-        [below.unwrap_or(ends[0]), above.unwrap_or(ends[1])]
-    }
-
-    /// A stretch with all of the rows that lie in a part of it.
-    fn around_rows(
-        &self,
-        rows: &[Located],
-        observable: Observable,
-        mut stretch: [f64; 2],
-    ) -> [f64; 2] {
-        for _ in 0..rows.len() {
-            let cut = rows
-                .iter()
-                .filter(|row| row.observable == observable)
-                .find(|row| {
-                    let [lower, upper] = hull(row);
-                    let is_inside = stretch[0] < lower && upper < stretch[1];
-                    let is_at_end = stretch == self.wider([lower, upper], 0.0);
-                    let is_outside = upper < stretch[0] || stretch[1] < lower;
-                    !is_inside && !is_outside && !is_at_end
-                });
-            let Some(cut) = cut else { break };
-            let [lower, upper] = hull(cut);
-            let wider = self.wider([lower.min(stretch[0]), upper.max(stretch[1])], 0.0);
-            if wider == stretch {
-                break;
-            }
-            stretch = wider;
-        }
-        stretch
-    }
-}
-
-/// What finer cells show of one observable in a stretch.
-struct Found {
-    rows: Vec<Located>,
-    points: Vec<Point>,
-    /// Whether finer cells tell at all of their values whether a pair is there.
-    is_sure: bool,
-    /// Whether they are wide themselves.
-    is_wide: bool,
-}
-
-impl Found {
-    /// What is counted at the ends of the stretch, if that is what the sweep counts there, all in between is seen
-    /// whole, and its errors are smaller than the sweep's. Where errors are larger, what is not counted may be there
-    /// all the same.
-    fn continues(
-        &self,
-        points: &[&Point],
-        place: usize,
-        [lower, upper]: [f64; 2],
-    ) -> Option<[Signature; 2]> {
-        let is_whole = |point: &Point| {
-            let mut densities = point.densities.iter();
-            point.report.status.is_resolved()
-                && point.detections.iter().all(|one| one.is_seen)
-                && densities.all(|one| Doubt::of_negative(&one.density).is_none())
-        };
-        let within = points
-            .iter()
-            .filter(|point| (lower..=upper).contains(&point.value));
-        let before = within.filter_map(|point| point.densities.get(place));
-        let own = self
-            .points
-            .iter()
-            .filter_map(|point| point.densities.first());
-        let is_surer = largest_error(own) <= largest_error(before);
-        let counted = [lower, upper].map(|value| {
-            let own = counted(self.points.iter(), value, 0);
-            own.filter(|own| counted(points.iter().copied(), value, place) == Some(*own))
-        });
-        let [below, above] = counted;
-        let ends = [below?, above?];
-        (is_surer && self.points.iter().all(is_whole)).then_some(ends)
-    }
-}
-
-/// The largest error of densities, as a share of their mass.
-fn largest_error<'d>(densities: impl Iterator<Item = &'d EstimatedDensity>) -> f64 {
-    let error = |one: &EstimatedDensity| {
-        let volumes = one.density.volumes();
-        let errors = one.standard_error.iter().zip(&volumes);
-        errors.map(|(error, volume)| error * volume).sum()
-    };
-    densities.map(error).fold(0.0, f64::max)
-}
-
-/// Where a row may lie.
-fn hull(row: &Located) -> [f64; 2] {
-    [
-        row.lower.min(row.value - row.error),
-        row.upper.max(row.value + row.error),
-    ]
-}
-
-/// Whether finer cells may tell more of a row.
-fn is_of_cells(row: &Located) -> bool {
-    row.reason().is_some_and(Doubt::is_of_cells)
 }

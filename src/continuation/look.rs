@@ -56,7 +56,10 @@ impl CloserLook {
         let (told, tells) = (Told::by(&before), Told::by(&self.rows));
         let is_more = match tells {
             Told::Located => told < tells || before.len() < self.rows.len(),
-            Told::Values => told < tells || is_first,
+            // Of two values that are both less certain than wanted, that of finer cells is the better one.
+            Told::Values => {
+                told < tells || is_first || (told == tells && before.len() == self.rows.len())
+            }
             Told::Bands => false,
         };
         if is_more {

@@ -10,8 +10,8 @@ use super::forcing::{Solved, amplitude};
 use super::relaxation::Relaxation;
 use super::rotation::{Steady, rotation};
 use super::second::{Second, SecondSolve};
-use super::session::{GeneratorSession, PointSolve, ROUGH};
-use super::source::METHOD;
+use super::session::{FINE, GeneratorSession, PointSolve, ROUGH};
+use super::source::{METHOD, SHARP};
 use super::trail::{self, Trail};
 use super::unknowns::{by_schemes, negative_mass, summed_over_modes, with_walls};
 use crate::continuation::measure::{ESCAPE_RATE, FACTORISATIONS, NEGATIVE_MASS};
@@ -218,11 +218,12 @@ impl GeneratorSession {
         let (system, space) = (solved.system.as_ref(), problem.space());
         let unknowns = &solved.steady.mass;
         let change = match (&solved.second, &solved.along) {
-            (Some(_), Some((change, true))) => change.clone(),
+            (Some(_), Some((change, true))) if !self.source.sharp => change.clone(),
             (Some(second), along) => {
                 let expected = along.as_ref().map(|(change, _)| change.as_slice());
                 let solver = &mut self.solver;
-                solver.response(&second.product(unknowns), unknowns, expected, ROUGH)?
+                let tolerance = if self.source.sharp { FINE } else { ROUGH };
+                solver.response(&second.product(unknowns), unknowns, expected, tolerance)?
             }
             (None, _) => vec![0.0; unknowns.len()],
         };
@@ -234,6 +235,9 @@ impl GeneratorSession {
         let mut densities = maps.exact(problem, masses, &difference)?;
         for one in &mut densities {
             one.structure = maps.structure(system, problem, masses, one.observable, kinked);
+            if self.source.sharp {
+                one.negligible *= SHARP;
+            }
         }
         let solved = solved.second.is_some().then_some(SecondSolve {
             unknowns: changed,

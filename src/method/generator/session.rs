@@ -33,6 +33,10 @@ use crate::system::System;
 /// Relative error of differences between schemes, which estimate errors.
 pub(super) const ROUGH: f64 = 1e-2;
 
+/// The same where low peaks decide: what a difference may be off by is spread over all cells, and must be small against
+/// their heights.
+pub(super) const FINE: f64 = 1e-6;
+
 /// Distance in L1 of the unknowns that were expected to those that were found up to which a difference between schemes
 /// that was worked out for the first is that of the second, to [`ROUGH`].
 const NEAR: f64 = 1e-3;

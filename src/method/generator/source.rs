@@ -21,6 +21,9 @@ use crate::system::{Enclosed, Family, ParameterValues, SwitchingSurface, System,
 /// Name of the method in tables.
 pub(super) const METHOD: &str = "generator";
 
+/// By how much the solver's tolerance is smaller where low peaks decide.
+pub(super) const SHARP: f64 = 1e-3;
+
 /// Systems that differ in one parameter alone.
 pub(super) struct Varied {
     family: Family,
@@ -51,6 +54,9 @@ pub struct GeneratorSource {
     /// Whether densities are all that is asked for: a check compares them with what another source found, whose errors
     /// and relaxation are known.
     pub(super) checks: bool,
+    /// Whether differences between schemes are worked out as well as the densities themselves: where errors are asked of
+    /// finer cells, they decide on peaks that are many orders of magnitude lower than the highest.
+    pub(super) sharp: bool,
 }
 
 impl GeneratorSource {
@@ -73,6 +79,7 @@ impl GeneratorSource {
             kinked: all_kinked_surfaces(&systems, space),
             enclosed: false,
             checks: false,
+            sharp: false,
         })
     }
 
@@ -98,6 +105,7 @@ impl GeneratorSource {
         let problem = problem.with_finer_bins(finer_factor(space));
         Ok(Self {
             checks: !want.errors,
+            sharp: self.sharp || want.errors,
             ..Self::new(&problem, &self.options)?
         })
     }
@@ -164,7 +172,7 @@ impl GeneratorSource {
     ) -> RateSolver {
         let rates = RateOptions {
             max_iterations,
-            tolerance: self.options.solver_tolerance,
+            tolerance: self.options.solver_tolerance * if self.sharp { SHARP } else { 1.0 },
             memory_limit_bytes: (self.options.memory_limit * 1e9) as u64,
             ..RateOptions::default()
         };

@@ -175,6 +175,24 @@ fn what_coarse_cells_leave_in_doubt_is_located_on_finer_ones() {
     assert_eq!((closer.located, closer.located_right), (2, 2));
 }
 
+/// The second peak has a hundred-thousandth of the density of the first where it is counted, and a few millionths where
+/// it is born: less than what differences between schemes are off by where they need say no more than how large errors
+/// are.
+#[test]
+fn a_peak_five_orders_of_magnitude_lower_is_located() {
+    let [coarse, closer] = without_and_with_closer_looks(848_010);
+    assert_eq!((coarse.located, coarse.in_band), (0, 2));
+    assert_eq!((closer.located, closer.located_right), (2, 2));
+}
+
+/// On 30 × 45 cells one peak is counted from one end of the sweep to the other, of two that are there at both ends.
+#[test]
+fn what_wide_cells_do_not_count_at_the_ends_of_a_sweep_is_told_by_finer_ones() {
+    let [coarse, closer] = without_and_with_closer_looks(848_011);
+    assert_eq!((coarse.located, coarse.missed), (0, 2));
+    assert_eq!((closer.located, closer.located_right), (2, 2));
+}
+
 #[test]
 #[ignore = "prints the table of docs/location.md"]
 fn gibbs_in_full() {
