@@ -1,7 +1,7 @@
 //! Where finer cells may tell more than those of a sweep.
 //!
-//! Around rows that are not located; where the slope along a crest is level within its error, so that a pair of peak and
-//! saddle may be there; and where cells are wide, and so are not sure that nothing is there.
+//! Around rows that are not located; where the slope along a crest is level within its error, so that a pair of peak
+//! and saddle may be there; and where cells are wide, and so are not sure that nothing is there.
 
 use super::found::Found;
 use super::label::Located;
@@ -44,8 +44,8 @@ impl<'p> InDoubt<'p> {
         &self.points
     }
 
-    /// Stretches around the rows of an observable that cells which are refined so many times may tell better, and around
-    /// values at which they may tell whether a pair is there, apart from each other.
+    /// Stretches around the rows of an observable that cells which are refined so many times may tell better, and
+    /// around values at which they may tell whether a pair is there, apart from each other.
     pub(super) fn stretches(&self, rows: &[Located], of: Watched, times: u8) -> Vec<[f64; 2]> {
         let in_doubt = rows
             .iter()
@@ -80,8 +80,8 @@ impl<'p> InDoubt<'p> {
         }
     }
 
-    /// A stretch that reaches a step farther to either side, with all of the rows that lie in a part of it; `None` where
-    /// it is the whole sweep.
+    /// A stretch that reaches a step farther to either side, with all of the rows that lie in a part of it; `None`
+    /// where it is the whole sweep.
     pub(super) fn next_wider(
         &self,
         stretch: [f64; 2],

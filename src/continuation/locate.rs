@@ -51,7 +51,7 @@ pub(super) fn label_points(
                 Some(Course::Beyond(at)) => {
                     by_bracket(&solved, observables, change, [*at; 2], Doubt::BornBeyond)
                 }
-                None => by_persistence(&solved, observables, change, (detector, options)),
+                None => by_persistence(&solved, observables, change, detector),
             };
             (row, change)
         });
@@ -132,14 +132,10 @@ fn by_persistence(
     points: &[&Point],
     observables: &[Observable],
     change: &Change,
-    (detector, options): (&dyn Detector, &Goal),
+    detector: &dyn Detector,
 ) -> Located {
+    // Counting follows what cells or samples show, and nothing says how far that is from the truth.
     let found = persistence::band(points, change.observable, change.left, detector.doubt());
-    // Counting follows what the cells show, and nothing says how far that is from the truth, but for noise.
-    let is_noisy = points[change.left].densities[change.observable].is_noisy();
-    let is_narrow = found.upper - found.lower <= options.tolerance * (1.0 + 1e-9);
-    let is_resolved = found.resolved_by_cells;
-    let in_doubt = !(is_noisy && is_narrow && is_resolved);
     // Signatures that were not seen whole say nothing of where in between.
     let upper = if change.right == change.left + 1 {
         found.upper
@@ -148,17 +144,13 @@ fn by_persistence(
     };
     let doubt = if found.sinks {
         Doubt::TooLow
-    } else if is_resolved {
+    } else if found.resolved_by_cells {
         Doubt::NoIndicator
     } else {
         Doubt::FewCellsApart
     };
-    band(
-        observables,
-        change,
-        (found.lower, found.value, upper),
-        in_doubt.then_some(doubt),
-    )
+    let place = (found.lower, found.value, upper);
+    band(observables, change, place, Some(doubt))
 }
 
 pub(super) fn by_indicator(

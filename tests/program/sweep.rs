@@ -150,7 +150,10 @@ fn exact_bifurcations_lie_in_the_stated_band() {
         (opens, exact, 0.02),
     ] {
         let row = assert_one(&swept(name, settings), observable, ["1 peak", after]);
-        assert!(row.holds(0.0), "{name}: {row:?}");
+        // What samples state is an interval of 95 %: a hundred of them would miss five times.
+        let intervals = if width.is_finite() { 1.0 } else { 2.0 };
+        let off = row.number("value").abs();
+        assert!(off <= intervals * row.number("error"), "{name}: {row:?}");
         assert!(
             row.number("upper") - row.number("lower") < width,
             "{name}: {row:?}"

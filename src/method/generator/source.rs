@@ -54,8 +54,8 @@ pub struct GeneratorSource {
     /// Whether densities are all that is asked for: a check compares them with what another source found, whose errors
     /// and relaxation are known.
     pub(super) checks: bool,
-    /// Whether differences between schemes are worked out as well as the densities themselves: where errors are asked of
-    /// finer cells, they decide on peaks that are many orders of magnitude lower than the highest.
+    /// Whether differences between schemes are worked out as well as the densities themselves: where errors are asked
+    /// of finer cells, they decide on peaks that are many orders of magnitude lower than the highest.
     pub(super) sharp: bool,
 }
 
