@@ -75,6 +75,7 @@
 //! | the generator between walls on the cells of a sweep, or on fewer | `grid.rs` |
 //! | the model of a few dozen states | `model.rs` |
 //! | eigenvalues, and their errors on one grid | `modes.rs` |
+//! | the model that has them, at real shifts; at the harmonics of a motion | `real_shifts.rs`, `harmonic_shifts.rs` |
 //! | eigenvalues with the errors of the cells | `slow.rs` |
 //! | a model of the resolvent that grows until spectra stand, on one grid | `resolvent.rs` |
 //! | the model as a function of frequency and lag | `transfer.rs` |
@@ -84,11 +85,13 @@
 
 mod errors;
 mod grid;
+mod harmonic_shifts;
 mod kramers;
 mod model;
 mod modes;
 mod peak;
 mod power;
+mod real_shifts;
 mod resolvent;
 mod slow;
 mod slowest;

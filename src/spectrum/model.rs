@@ -12,6 +12,15 @@ const NOTHING: f64 = 1e-11;
 /// A new vector this small, relative to what it was before the others were taken out of it, adds nothing.
 const SPANNED: f64 = 1e-12;
 
+/// Modes are looked for that oscillate no faster than this many times the rate of the motion.
+pub(super) const REACH: f64 = 3.0;
+
+/// Relative change by more vectors at which an eigenvalue stands.
+pub(super) const TOLERANCE: f64 = 1e-7;
+
+/// Decay rates that differ by less, relatively, are in the order of their frequencies.
+const SAME: f64 = 1e-2;
+
 /// Distance of the shift of inverse iteration from an eigenvalue that is known, as a share.
 const BESIDE: f64 = 1e-9;
 
@@ -130,6 +139,30 @@ impl Products {
             first,
             second,
         })
+    }
+}
+
+/// Spaces of either side, what a generator and another one do between them, and the modes that are told by it, each with
+/// what fewer vectors change.
+#[derive(Default)]
+pub(super) struct GridModel {
+    pub(super) columns: Basis,
+    pub(super) rows: Basis,
+    pub(super) products: Products,
+    pub(super) modes: Vec<(Complex<f64>, f64)>,
+}
+
+/// Puts modes in the order of their decay rates, of those with the same one in the order of their frequencies.
+pub(super) fn in_order<T>(modes: &mut [T], value: impl Fn(&T) -> Complex<f64>) {
+    modes.sort_by(|a, b| value(b).re.total_cmp(&value(a).re));
+    let mut first = 0;
+    for end in 1..=modes.len() {
+        let is_same =
+            end < modes.len() && value(&modes[end]).re >= (1.0 + SAME) * value(&modes[first]).re;
+        if !is_same {
+            modes[first..end].sort_by(|a, b| value(a).im.total_cmp(&value(b).im));
+            first = end;
+        }
     }
 }
 

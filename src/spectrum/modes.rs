@@ -1,43 +1,22 @@
-//! Eigenvalues on one grid: a model that grows until those that are wanted stand.
+//! Eigenvalues on one grid: a model that grows until those that are wanted stand, at real shifts or, where so many lie
+//! about them that it tells none, at the harmonics of the motion.
 
 use nalgebra::Complex;
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::grid::{Grid, ending};
-use super::model::{Basis, Products, ReducedModel};
+use super::grid::Grid;
+use super::harmonic_shifts::near_harmonics;
+use super::model::GridModel;
+use super::real_shifts::at_real_shifts;
 use super::{SpectrumError, Steady};
 use crate::cancellation::Cancellation;
 use crate::space::CellSpace;
-use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions};
+use crate::stationary::generator::{AbsorbingWork, RateOptions};
 use crate::system::System;
-
-/// Vectors of either side by which a model grows before its eigenvalues are looked at again.
-const GROWTH: usize = 12;
 
 /// Modes beyond those that are wanted, in place of some that are none of the equation.
 const SPARE: usize = 1;
-
-/// Distance from the first shift, in shifts, up to which modes are looked for.
-const REACH: f64 = 3.0;
-
-/// Most vectors of either side at one shift.
-const MOST: usize = 144;
-
-/// Most shifts.
-const SHIFTS: usize = 3;
-
-/// A mode this many times slower than the shift has a shift of its own.
-const SLOWER: f64 = 30.0;
-
-/// Slowest decay beside the shift that is looked for.
-const SLOWEST: f64 = 1e-13;
-
-/// Relative change by more vectors at which an eigenvalue stands.
-const TOLERANCE: f64 = 1e-7;
-
-/// Decay rates that differ by less, relatively, are in the order of their frequencies.
-const SAME: f64 = 1e-2;
 
 /// Relative change by half of the dissipation from which a number is none of the equation.
 pub(super) const ARTEFACT: f64 = 0.3;
@@ -78,57 +57,26 @@ pub(super) fn modes(
     motion: &Motion,
     (rates, cancellation): (&RateOptions, &Cancellation),
 ) -> Result<(Vec<GridMode>, AbsorbingWork), SpectrumError> {
-    let cells = grid.space.n_cells();
     let mut numbers = Xoshiro256PlusPlus::seed_from_u64(SEED);
-    let mut random = || -> Vec<f64> {
-        (0..cells)
-            .map(|_| numbers.random_range(-1.0..1.0))
-            .collect()
-    };
-    let (mut columns, mut rows) = (Basis::default(), Basis::default());
-    let mut products = Products::default();
     let mut work = AbsorbingWork::default();
-    let mut shift = motion.rate;
-    let mut found = Vec::new();
-    for _ in 0..SHIFTS {
-        let (matrix, ends) = ending(&grid.full, shift);
-        let mut solver = AbsorbingSolver::new(&grid.space, *rates, cancellation);
-        let (stage, mut column) = solver.stage(&matrix, &ends, &balanced(random()))?;
-        let mut row = solver.expected(&stage, &random())?.values();
-        let begun = columns.vectors.len();
-        loop {
-            let grows = columns.add(balanced(column)) && rows.add(row);
-            let used = columns.vectors.len() - begun;
-            if !grows || used >= MOST {
-                break;
-            }
-            if used.is_multiple_of(GROWTH) {
-                products.grow(&rows, &columns, [&grid.full, &grid.half]);
-                let size = columns.vectors.len();
-                let standing = Standing::new(&products, size, wanted + SPARE, motion.rate);
-                found = standing.modes;
-                if standing.is_enough {
-                    break;
-                }
-            }
-            let last = columns.vectors.len() - 1;
-            column = solver.times(&stage, &columns.vectors[last])?;
-            row = solver.expected(&stage, &rows.vectors[last])?.values();
-        }
-        work.factorisations += solver.work.factorisations;
-        work.passes += solver.work.passes;
-        let slowest = found.first().map_or(shift, |(one, _)| -one.re);
-        if slowest * SLOWER >= shift || slowest <= SLOWEST * motion.rate {
-            break;
-        }
-        shift = slowest;
+    let enough = (wanted + SPARE, motion.rate);
+    let options = (rates, cancellation);
+    let mut found = at_real_shifts(grid, enough, &mut numbers, options, &mut work)?;
+    if found.modes.is_empty() {
+        found = near_harmonics(grid, enough, &mut numbers, options, &mut work)?;
     }
-    products.grow(&rows, &columns, [&grid.full, &grid.half]);
+    let GridModel {
+        columns,
+        rows,
+        products,
+        modes,
+    } = &mut found;
+    products.grow(rows, columns, [&grid.full, &grid.half]);
     let size = columns.vectors.len().min(rows.vectors.len());
     let Some(model) = products.model(size) else {
         return Ok((Vec::new(), work));
     };
-    let all = found.iter().filter_map(|&(value, change)| {
+    let all = modes.iter().filter_map(|&(value, change)| {
         let eigen = model.eigen(value)?;
         let relative = (eigen.change / value).norm();
         let (left, right) = (rows.combined(&eigen.rows), columns.combined(&eigen.columns));
@@ -157,71 +105,6 @@ fn real(vector: &[Complex<f64>]) -> Vec<f64> {
         return Vec::new();
     };
     vector.iter().map(|one| (one * turn).re).collect()
-}
-
-/// With Σ = 0: the steady state is left out.
-pub(super) fn balanced(mut vector: Vec<f64>) -> Vec<f64> {
-    let mean = vector.iter().sum::<f64>() / vector.len() as f64;
-    vector.iter_mut().for_each(|value| *value -= mean);
-    vector
-}
-
-/// The eigenvalues of a model that fewer vectors give as well, each with what they change.
-///
-/// They are told from the one nearest to the first shift on, up to the first that does not stand: of those that are as
-/// near none is missing. What is farther than `REACH` shifts away oscillates too fast, and is left out where there are
-/// enough without it.
-struct Standing {
-    modes: Vec<(Complex<f64>, f64)>,
-    is_enough: bool,
-}
-
-impl Standing {
-    fn new(products: &Products, size: usize, wanted: usize, shift: f64) -> Self {
-        let of = |size: usize| products.model(size).as_ref().map(ReducedModel::eigenvalues);
-        let (Some(all), Some(fewer)) = (of(size), of(size - GROWTH / 2)) else {
-            let modes = Vec::new();
-            return Self {
-                modes,
-                is_enough: false,
-            };
-        };
-        let away = |value: Complex<f64>| (value - shift).norm();
-        let mut all: Vec<Complex<f64>> = all.into_iter().filter(|one| one.re < 0.0).collect();
-        all.sort_by(|a, b| away(*a).total_cmp(&away(*b)));
-        let change = |value: Complex<f64>| {
-            let distances = fewer.iter().map(|other| (value - other).norm());
-            (value, distances.fold(f64::INFINITY, f64::min))
-        };
-        let stands = |(value, change): &(Complex<f64>, f64)| *change <= TOLERANCE * value.norm();
-        let farthest = all.len();
-        let mut modes: Vec<_> = all.into_iter().map(change).take_while(stands).collect();
-        let within = modes
-            .iter()
-            .filter(|(value, _)| away(*value) <= REACH * shift)
-            .count();
-        let reaches = modes.len() == farthest || within < modes.len();
-        modes.truncate(within.max(wanted));
-        in_order(&mut modes, |(value, _)| *value);
-        Self {
-            is_enough: reaches && modes.len() >= wanted,
-            modes,
-        }
-    }
-}
-
-/// Puts modes in the order of their decay rates, of those with the same one in the order of their frequencies.
-pub(super) fn in_order<T>(modes: &mut [T], value: impl Fn(&T) -> Complex<f64>) {
-    modes.sort_by(|a, b| value(b).re.total_cmp(&value(a).re));
-    let mut first = 0;
-    for end in 1..=modes.len() {
-        let is_same =
-            end < modes.len() && value(&modes[end]).re >= (1.0 + SAME) * value(&modes[first]).re;
-        if !is_same {
-            modes[first..end].sort_by(|a, b| value(a).im.total_cmp(&value(b).im));
-            first = end;
-        }
-    }
 }
 
 /// What the ends of the range do to an eigenvalue of a size, at most; `product` is |l r| at a cell. A wall at the distance b from the mean changes it by

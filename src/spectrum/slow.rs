@@ -6,7 +6,8 @@ use nalgebra::Complex;
 
 use super::errors::{DAMPED, FEWER, on_grids};
 use super::grid::Grid;
-use super::modes::{GridMode, Motion, in_order, modes};
+use super::model::in_order;
+use super::modes::{GridMode, Motion, modes};
 use super::slowest::slowest;
 use super::{SpectrumError, Steady};
 use crate::cancellation::Cancellation;

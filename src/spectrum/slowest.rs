@@ -10,7 +10,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::grid::{Grid, ending};
 use super::model::product;
-use super::modes::{ARTEFACT, GridMode, Motion, SEED, balanced, of_ends};
+use super::modes::{ARTEFACT, GridMode, Motion, SEED, of_ends};
+use super::real_shifts::balanced;
 use super::{SpectrumError, dot};
 use crate::cancellation::Cancellation;
 use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions};

@@ -128,6 +128,22 @@ fn an_oscillator_has_the_sums_of_its_two() {
     }
 }
 
+/// Rows of modes stand so near to each other that a model at a real shift tells none of them.
+#[test]
+fn a_lightly_damped_oscillator_has_the_sums_of_its_two() {
+    for damping in [0.01_f64, 0.003] {
+        let drift = format!("-x - {} y", 2.0 * damping);
+        let model = model(&[("x", "y"), ("y", &drift)], &[("y", "0.1")]);
+        let spread = 0.1 / (4.0 * damping).sqrt();
+        let axis = (-6.0 * spread, 6.0 * spread, 100);
+        let found = modes(&model, &[axis, axis], 4);
+        assert_eq!(found.modes.len(), 4);
+        let exact = sums([0.0, 1.0, -1.0, -2.0 * damping], 40);
+        hold(&format!("damping {damping}"), &found, &exact, (5e-2, 3.5));
+        assert!(found.work.factorisations <= 30, "{:?}", found.work);
+    }
+}
+
 /// The least eigenvalues above zero of dx = -U'(x) dt + √(2D) dW by a chain of states with rates that keep detailed
 /// balance, to second order in their distance, counted by the signs of a symmetric matrix (Sturm).
 fn of_chain(

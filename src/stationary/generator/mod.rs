@@ -21,6 +21,7 @@
 //! | `question` | a change of the balance, and its answer |
 //! | `response` | how a steady state answers to a change |
 //! | `absorbing` | processes that end: occupied times, and what is expected from each cell |
+//! | `shifted` | solves beside a complex number, for eigenvalues near it |
 //! | `solver` | when to iterate, when to factorise |
 //! | `memory` | where the solver stands, to go on from there later |
 //! | `symmetric` | symmetric generators on half of the cells |
@@ -42,6 +43,7 @@ mod prediction;
 mod question;
 mod response;
 mod scaled;
+mod shifted;
 mod solver;
 mod symbolic;
 mod symmetric;
@@ -55,6 +57,7 @@ pub(crate) use absorbing::{AbsorbingSolver, Expected, FactorMemory};
 pub(crate) use balance::dot;
 pub(crate) use memory::SolverMemory;
 pub use preconditioner::{Estimate, RateMethod, estimate};
+pub(crate) use shifted::{Shifted, ShiftedPattern};
 pub use symmetric::{Along, RateSolver};
 
 /// Settings of [`RateSolver`].

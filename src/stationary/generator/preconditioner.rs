@@ -143,6 +143,11 @@ fn grid(space: &CellSpace, structure: &Structure, method: RateMethod) -> Grid {
     Grid::new(&space.shape(), &reach, LEAF).fold_at(structure.folded)
 }
 
+/// The grid of factors of all cells together.
+pub(super) fn whole_grid(space: &CellSpace, structure: &Structure) -> Grid {
+    grid(space, structure, RateMethod::LuSingle)
+}
+
 /// The grid of the places at which modes stand that are taken one by one, that of all other axes; `None` where there
 /// are none.
 fn grid_of_places(space: &CellSpace, structure: &Structure) -> Option<Grid> {
