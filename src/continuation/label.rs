@@ -135,12 +135,17 @@ impl Label {
                 } else {
                     (above, below)
                 };
+                let of_modes = of.is_empty();
                 Some(RowWords {
-                    of: format!("spectrum of {of}"),
+                    of: if of_modes {
+                        "slow modes".to_owned()
+                    } else {
+                        format!("spectrum of {of}")
+                    },
                     before: before.to_owned(),
                     after: after.to_owned(),
                     change: change.words(one.rises).to_owned(),
-                    method: "spectrum",
+                    method: if of_modes { "relaxation" } else { "spectrum" },
                     status: one.status(),
                 })
             }
@@ -234,7 +239,7 @@ impl Label {
         }
     }
 
-    /// The change of a power spectrum, if it is one.
+    /// The change of a power spectrum or of the slowest modes, if it is one.
     pub fn spectral_change(&self) -> Option<&LevelCrossing> {
         match self {
             Self::Level(crossing) => Some(&**crossing).filter(|one| one.spectral().is_some()),

@@ -7,7 +7,9 @@
 
 use super::Point;
 use super::doubt::{BifurcationStatus, Doubt, status_of};
-use super::measure::{EXPONENT, MeasureKind, SPECTRAL_CURVATURE, SPECTRAL_RISE};
+use super::measure::{
+    DECAY_DISCRIMINANT, EXPONENT, MeasureKind, SPECTRAL_CURVATURE, SPECTRAL_RISE,
+};
 use crate::system::{Family, MeasureLevel};
 
 /// Values through which the polynomial goes, half of them on either side.
@@ -46,14 +48,17 @@ impl LevelCrossing {
         status_of(&self.doubts)
     }
 
-    /// What changes in which power spectrum, where it is a number of one that passes zero.
+    /// What changes in which spectrum, where it is a number of one that passes zero; no name is that of relaxation.
     pub(crate) fn spectral(&self) -> Option<(SpectralChange, &str)> {
         if self.asked.level != 0.0 {
             return None;
         }
         SpectralChange::ALL.into_iter().find_map(|change| {
             let rest = self.asked.measure.strip_prefix(change.measure().word)?;
-            Some((change, rest.strip_prefix('_')?))
+            match change {
+                SpectralChange::Pair => rest.is_empty().then_some((change, "")),
+                _ => Some((change, rest.strip_prefix('_')?)),
+            }
         })
     }
 
@@ -63,24 +68,30 @@ impl LevelCrossing {
     }
 }
 
-/// How the shape of a power spectrum changes.
+/// How the shape of a power spectrum changes, or the kind of the slowest deviations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum SpectralChange {
     /// The maximum at frequency zero becomes a minimum, or a minimum a maximum.
     AtZero,
     /// A maximum at a frequency above zero is born beside a minimum, or vanishes with it.
     Fold,
+    /// The two slowest modes become a pair that oscillates, or a pair becomes two that do not.
+    Pair,
 }
 
 impl SpectralChange {
-    /// Both.
-    const ALL: [Self; 2] = [Self::AtZero, Self::Fold];
+    /// All.
+    const ALL: [Self; 3] = [Self::AtZero, Self::Fold, Self::Pair];
+
+    /// Those of a power spectrum.
+    const OF_POWER: [Self; 2] = [Self::AtZero, Self::Fold];
 
     /// The number that is zero there.
     fn measure(self) -> MeasureKind {
         match self {
             Self::AtZero => SPECTRAL_CURVATURE,
             Self::Fold => SPECTRAL_RISE,
+            Self::Pair => DECAY_DISCRIMINANT,
         }
     }
 
@@ -89,16 +100,19 @@ impl SpectralChange {
         match self {
             Self::AtZero => ["maximum at zero", "minimum at zero"],
             Self::Fold => ["falling", "maximum above zero"],
+            Self::Pair => ["pair that oscillates", "two that decay"],
         }
     }
 
-    /// What happens to a spectrum where the number rises, and where it falls.
+    /// What happens to a spectrum, or to deviations, where the number rises, and where it falls.
     pub(super) fn words(self, rises: bool) -> &'static str {
         match (self, rises) {
             (Self::AtZero, true) => "the spectrum's maximum leaves frequency zero",
             (Self::AtZero, false) => "the spectrum's maximum comes to frequency zero",
             (Self::Fold, true) => "maximum and minimum of the spectrum appear",
             (Self::Fold, false) => "maximum and minimum of the spectrum vanish",
+            (Self::Pair, true) => "the slowest deviations stop oscillating",
+            (Self::Pair, false) => "the slowest deviations begin to oscillate",
         }
     }
 }
@@ -121,6 +135,8 @@ struct Root {
     interpolation: f64,
     /// The error of the measure over its slope.
     of_measure: f64,
+    /// Whether the measure does not go to zero from either side, as where another mode becomes the slowest.
+    is_jump: bool,
 }
 
 impl Root {
@@ -130,14 +146,14 @@ impl Root {
 }
 
 /// The levels of which the crossings are wanted: those that are asked for, and zero for the exponent along the density
-/// and for the numbers that say how a spectrum changes.
+/// and for the numbers that say how a spectrum, or the kind of the slowest deviations, changes.
 pub(super) fn asked_of(family: &Family) -> Vec<MeasureLevel> {
     let question = family.questions.spectrum.iter();
     let powers = question.flat_map(|question| {
         let pairs = question.pairs.iter().filter(|(one, other)| one == other);
         let names = pairs.map(|&pair| question.name(pair));
         names.flat_map(|of| {
-            SpectralChange::ALL.map(|change| MeasureLevel {
+            SpectralChange::OF_POWER.map(|change| MeasureLevel {
                 measure: change.measure().name(&of),
                 level: 0.0,
             })
@@ -147,9 +163,13 @@ pub(super) fn asked_of(family: &Family) -> Vec<MeasureLevel> {
         measure: EXPONENT.word.to_owned(),
         level: 0.0,
     });
+    let pair = (family.questions.slow_modes >= 2).then(|| MeasureLevel {
+        measure: DECAY_DISCRIMINANT.word.to_owned(),
+        level: 0.0,
+    });
     let mut all = family.questions.levels.to_vec();
-    let new: Vec<MeasureLevel> = exponent
-        .into_iter()
+    let new: Vec<MeasureLevel> = (exponent.into_iter())
+        .chain(pair)
         .chain(powers)
         .filter(|one| !all.contains(one))
         .collect();
@@ -242,10 +262,26 @@ fn roots(samples: &[Excess]) -> Vec<Root> {
                 _ => (root(few, ends) - value).abs(),
             },
             of_measure: ends[0].error.max(ends[1].error) / slope.abs(),
+            is_jump: is_jump(samples, left, value),
             ends,
         }
     });
     found.collect()
+}
+
+/// Whether lines through the two samples on either side of a root lead to less than half of the way to zero there.
+fn is_jump(samples: &[Excess], left: usize, root: f64) -> bool {
+    let stays = |near: &Excess, far: &Excess| {
+        let slope = (near.over - far.over) / (near.at - far.at);
+        let there = near.over + slope * (root - near.at);
+        let is_known = near.over.abs() > near.error;
+        is_known && there / near.over > 0.5
+    };
+    let sides = (left.checked_sub(1), samples.get(left + 2));
+    let (Some(before), Some(after)) = sides else {
+        return false;
+    };
+    stays(&samples[left], &samples[before]) && stays(&samples[left + 1], after)
 }
 
 /// The root between two samples of the polynomial through some.
@@ -282,6 +318,7 @@ fn row(asked: &MeasureLevel, root: &Root, tolerance: f64) -> LevelCrossing {
     let is_judged = root.ends.iter().all(|end| end.is_judged);
     let is_known = error <= tolerance;
     let doubt = match (is_known, is_judged) {
+        _ if root.is_jump => Some(Doubt::Jump),
         (false, _) => Some(Doubt::SolverError(error)),
         (true, false) => Some(Doubt::CheckMissing),
         (true, true) => None,
@@ -305,4 +342,38 @@ fn merge(last: &mut LevelCrossing, next: &LevelCrossing) {
     last.value = 0.5 * (last.lower + last.upper);
     last.error = 0.5 * (last.upper - last.lower);
     last.doubts = vec![Doubt::Stages];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn root_of(measure: impl Fn(f64) -> f64, at: &[f64]) -> Root {
+        let sample = |&at: &f64| Excess {
+            at,
+            over: measure(at),
+            error: 1e-9,
+            is_judged: true,
+        };
+        let samples: Vec<Excess> = at.iter().map(sample).collect();
+        let mut found = roots(&samples);
+        assert_eq!(found.len(), 1);
+        found.remove(0)
+    }
+
+    #[test]
+    fn a_measure_that_jumps_over_its_level_has_no_root_there() {
+        let near = [0.0, 0.3, 0.49, 0.51, 0.7, 1.0];
+        let smooth = root_of(|at| (at - 0.5) * (2.0 + at), &near);
+        assert!(!smooth.is_jump && (smooth.value - 0.5).abs() < 1e-9);
+        // Another mode becomes the slowest: from above zero to far below, with slopes on either side.
+        let other = |at: f64| if at < 0.5 { 0.2 - 0.1 * at } else { -1.0 - at };
+        let jump = root_of(other, &near);
+        assert!(jump.is_jump);
+        let level = MeasureLevel {
+            measure: DECAY_DISCRIMINANT.word.to_owned(),
+            level: 0.0,
+        };
+        assert_eq!(row(&level, &jump, 0.1).doubts, [Doubt::Jump]);
+    }
 }

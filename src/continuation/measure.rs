@@ -161,6 +161,11 @@ pub(crate) const DECAY_FREQUENCY: MeasureKind = kind(
     "1/t",
     "angular frequency at which a slow mode oscillates; 0 where it does not",
 );
+pub(crate) const DECAY_DISCRIMINANT: MeasureKind = kind(
+    "decay_discriminant",
+    "1/t^2",
+    "square of half of the difference of the two slowest modes: below zero where they are a pair that oscillates",
+);
 pub(crate) const SPECTRAL_PEAK: MeasureKind = kind(
     "spectral_peak",
     "1/t",

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::grid::Grid;
-use super::modes::Motion;
+use super::motion::Motion;
 use super::{SpectrumError, Steady};
 use crate::generator::GeneratorOptions;
 use crate::space::CellSpace;

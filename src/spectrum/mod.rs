@@ -76,6 +76,7 @@
 //! | the model of a few dozen states | `model.rs` |
 //! | eigenvalues, and their errors on one grid | `modes.rs` |
 //! | the model that has them, at real shifts; at the harmonics of a motion | `real_shifts.rs`, `harmonic_shifts.rs` |
+//! | how fast and how far states move | `motion.rs` |
 //! | eigenvalues with the errors of the cells | `slow.rs` |
 //! | a model of the resolvent that grows until spectra stand, on one grid | `resolvent.rs` |
 //! | the model as a function of frequency and lag | `transfer.rs` |
@@ -89,6 +90,7 @@ mod harmonic_shifts;
 mod kramers;
 mod model;
 mod modes;
+mod motion;
 mod peak;
 mod power;
 mod real_shifts;

@@ -5,27 +5,20 @@ use nalgebra::Complex;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+use super::errors::{Estimate, Worked};
 use super::grid::Grid;
 use super::harmonic_shifts::near_harmonics;
 use super::model::GridModel;
+use super::motion::{Motion, of_ends};
 use super::real_shifts::at_real_shifts;
-use super::{SpectrumError, Steady};
 use crate::cancellation::Cancellation;
-use crate::space::CellSpace;
 use crate::stationary::generator::{AbsorbingWork, RateOptions};
-use crate::system::System;
 
 /// Modes beyond those that are wanted, in place of some that are none of the equation.
 const SPARE: usize = 1;
 
 /// Relative change by half of the dissipation from which a number is none of the equation.
 pub(super) const ARTEFACT: f64 = 0.3;
-
-/// What the ends do is an estimate: it is taken so many times.
-const SAFETY: f64 = 2.0;
-
-/// Masses below this are rounding.
-const NO_MASS: f64 = 1e-12;
 
 /// Seed of the vectors that begin.
 pub(super) const SEED: u64 = 0x5eed;
@@ -50,13 +43,31 @@ impl GridMode {
     }
 }
 
+/// The slowest modes of a grid.
+#[derive(Default)]
+pub(super) struct GridModes {
+    pub(super) modes: Vec<GridMode>,
+    /// The square of half of the difference of the two slowest.
+    pub(super) discriminant: Option<Estimate>,
+}
+
+impl GridModes {
+    /// Of one mode alone, or none.
+    pub(super) fn of(slowest: Option<GridMode>) -> Self {
+        Self {
+            modes: slowest.into_iter().collect(),
+            discriminant: None,
+        }
+    }
+}
+
 /// The slowest modes of a grid, in the order of their decay rates, a few more than wanted where so many are known.
 pub(super) fn modes(
     grid: &Grid,
     wanted: usize,
     motion: &Motion,
     (rates, cancellation): (&RateOptions, &Cancellation),
-) -> Result<(Vec<GridMode>, AbsorbingWork), SpectrumError> {
+) -> Worked<GridModes> {
     let mut numbers = Xoshiro256PlusPlus::seed_from_u64(SEED);
     let mut work = AbsorbingWork::default();
     let enough = (wanted + SPARE, motion.rate);
@@ -74,14 +85,13 @@ pub(super) fn modes(
     products.grow(rows, columns, [&grid.full, &grid.half]);
     let size = columns.vectors.len().min(rows.vectors.len());
     let Some(model) = products.model(size) else {
-        return Ok((Vec::new(), work));
+        return Ok((GridModes::default(), work));
     };
     let all = modes.iter().filter_map(|&(value, change)| {
         let eigen = model.eigen(value)?;
-        let relative = (eigen.change / value).norm();
         let (left, right) = (rows.combined(&eigen.rows), columns.combined(&eigen.columns));
         let product = |cell: usize| (left[cell] * right[cell]).norm();
-        (relative <= ARTEFACT).then(|| GridMode {
+        Some(GridMode {
             error: change + of_ends(grid, value.norm(), product, motion),
             left: match value.im {
                 0.0 => real(&left),
@@ -95,7 +105,35 @@ pub(super) fn modes(
             },
         })
     });
-    Ok((all.collect(), work))
+    let mut modes: Vec<GridMode> = all.collect();
+    let discriminant = discriminant(&modes);
+    modes.retain(|one| (one.change / one.value).norm() <= ARTEFACT);
+    let found = GridModes {
+        modes,
+        discriminant,
+    };
+    Ok((found, work))
+}
+
+/// The square of half of the difference of the two slowest modes, and what half of the dissipation changes of it, which
+/// is finite where both are the same and each of them changes infinitely.
+fn discriminant(slowest: &[GridMode]) -> Option<Estimate> {
+    let first = slowest.first()?;
+    let frequency = first.value.im;
+    if frequency != 0.0 {
+        return Some(Estimate {
+            value: -frequency * frequency,
+            change: -2.0 * frequency * first.change.im,
+            error: 2.0 * frequency.abs() * first.error,
+        });
+    }
+    let second = slowest.get(1).filter(|one| one.value.im == 0.0)?;
+    let half = 0.5 * (first.value.re - second.value.re);
+    Some(Estimate {
+        value: half * half,
+        change: half * (first.change.re - second.change.re),
+        error: half.abs() * (first.error + second.error),
+    })
 }
 
 /// The real parts of a vector that is real but for a complex factor.
@@ -105,89 +143,4 @@ fn real(vector: &[Complex<f64>]) -> Vec<f64> {
         return Vec::new();
     };
     vector.iter().map(|one| (one * turn).re).collect()
-}
-
-/// What the ends of the range do to an eigenvalue of a size, at most; `product` is |l r| at a cell. A wall at the distance b from the mean changes it by
-/// D l'(b) r(b). With l a polynomial and the density a Gaussian one of deviation σ that is, over the eigenvalue, the
-/// product l r at the end times σ²/b.
-pub(super) fn of_ends(
-    grid: &Grid,
-    size: f64,
-    product: impl Fn(usize) -> f64,
-    motion: &Motion,
-) -> f64 {
-    let (places, weights) = motion.at_ends(&grid.space);
-    let sizes = places.into_iter().zip(weights);
-    let share: f64 = sizes.map(|(cell, weight)| weight * product(cell)).sum();
-    share / motion.rate * size
-}
-
-/// How fast and how far states move in a steady state.
-pub(super) struct Motion {
-    /// Rate at which states change: the largest, over the axes, of the root mean square of the drift over the standard
-    /// deviation.
-    pub(super) rate: f64,
-    /// Per axis and end that is no wall of the system, the square of the standard deviation over the distance from the
-    /// mean to the end; zero at walls, and along series.
-    ends: Vec<[f64; 2]>,
-}
-
-impl Motion {
-    /// Of a steady state with these masses; `None` where nothing moves, or nothing is spread.
-    pub(super) fn new(grid: &Grid, system: &dyn System, steady: Steady<'_>) -> Option<Self> {
-        let whole: f64 = steady.masses.iter().map(|mass| mass.abs()).sum();
-        let axes = grid.space.axes();
-        let zeros = || vec![0.0; axes.len()];
-        let (mut drifts, mut means, mut squares) = (zeros(), zeros(), zeros());
-        for (cell, mass) in steady.masses.iter().enumerate() {
-            let share = mass.abs() / whole;
-            if share < NO_MASS {
-                continue;
-            }
-            let state = grid.space.centre(cell);
-            for (axis, drift) in system.drift_at(0.0, &state).into_iter().enumerate() {
-                drifts[axis] += share * drift * drift;
-                means[axis] += share * state[axis];
-                squares[axis] += share * state[axis] * state[axis];
-            }
-        }
-        let variance = |axis: usize| squares[axis] - means[axis] * means[axis];
-        let by_cells = (0..axes.len()).filter(|&axis| !axes[axis].is_modes());
-        let rates = by_cells.map(|axis| (drifts[axis] / variance(axis)).sqrt());
-        let rate = rates.filter(|rate| rate.is_finite()).reduce(f64::max)?;
-        let end = |axis: usize, end: usize| {
-            let is_wall = steady.closed.get(axis).is_none_or(|closed| closed[end]);
-            let at = [axes[axis].from(), axes[axis].to()][end];
-            if is_wall || axes[axis].is_modes() {
-                0.0
-            } else {
-                variance(axis) / (at - means[axis]).powi(2)
-            }
-        };
-        let ends = (0..axes.len()).map(|axis| [0, 1].map(|one| end(axis, one)));
-        (rate > 0.0).then(|| Self {
-            rate,
-            ends: ends.collect(),
-        })
-    }
-
-    /// Cells at ends that are no walls, with what the product of a row and a column there counts in a number: a rate.
-    pub(super) fn at_ends(&self, space: &CellSpace) -> (Vec<usize>, Vec<f64>) {
-        let mut found = (Vec::new(), Vec::new());
-        for (index, (axis, ends)) in space.axes().iter().zip(&self.ends).enumerate() {
-            for (position, &ratio) in [0, axis.count() - 1].into_iter().zip(ends) {
-                if ratio == 0.0 {
-                    continue;
-                }
-                let weight = SAFETY * 0.5 * axis.count() as f64 * ratio * self.rate;
-                for cell in
-                    (0..space.n_cells()).filter(|&cell| space.position(cell, index) == position)
-                {
-                    found.0.push(cell);
-                    found.1.push(weight);
-                }
-            }
-        }
-        found
-    }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::errors::{Estimate, Worked, combined, on_grids, smoothed};
 use super::grid::Grid;
-use super::modes::Motion;
+use super::motion::Motion;
 use super::peak::{Peak, steepest_rise};
 use super::resolvent::Resolvent;
 use super::transfer::Transfer;

@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use super::grid::{Grid, ending};
 use super::model::{Basis, Products, ReducedModel};
-use super::modes::Motion;
+use super::motion::Motion;
 use super::real_shifts::balanced;
 use super::transfer::Transfer;
 use super::{SpectrumError, dot};

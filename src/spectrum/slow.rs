@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use nalgebra::Complex;
 
-use super::errors::{DAMPED, FEWER, on_grids};
+use super::errors::{DAMPED, Estimate, FEWER, combined, on_grids};
 use super::grid::Grid;
 use super::model::in_order;
-use super::modes::{GridMode, Motion, modes};
+use super::modes::{GridMode, GridModes, modes};
+use super::motion::Motion;
 use super::slowest::slowest;
 use super::{SpectrumError, Steady};
 use crate::cancellation::Cancellation;
@@ -34,6 +35,10 @@ pub struct SlowModes {
     /// In the order of their decay rates, a pair of conjugates once, of those that oscillate no faster than about three
     /// times as fast as states change; fewer than wanted where no more are known.
     pub modes: Vec<SlowMode>,
+    /// The square of half of the difference of the two slowest modes, per unit time squared, with its error: below zero
+    /// where they are a pair that oscillates. It passes zero smoothly where two real modes become a pair, at which
+    /// neither is known well. Not known where the second one oscillates and the first does not.
+    pub discriminant: Option<(f64, f64)>,
     /// The left vector of the first mode on the cells, but for a constant and a factor; empty where it oscillates, or
     /// is not known.
     pub left: Vec<f64>,
@@ -63,6 +68,11 @@ pub fn slow_modes(
         }
     };
     let ((found, fewer), work) = on_grids(system, space, steady, settings.0, solve)?;
+    let of_grid = |grid: &GridModes| grid.discriminant.into_iter().collect::<Vec<_>>();
+    let of_fewer: Vec<Vec<Estimate>> = fewer.iter().map(of_grid).collect();
+    let discriminant = combined(&of_grid(&found), &of_fewer);
+    let (found, fewer) = (found.modes, fewer.into_iter().map(|grid| grid.modes));
+    let fewer: Vec<Vec<GridMode>> = fewer.collect();
     let mut errors: Vec<Complex<f64>> = found
         .iter()
         .map(|one| sizes(one.change) * DAMPED + both(one.error))
@@ -99,6 +109,10 @@ pub fn slow_modes(
     });
     Ok(SlowModes {
         modes: modes.collect(),
+        discriminant: discriminant
+            .first()
+            .copied()
+            .filter(|known| known.1.is_finite()),
         left,
         work,
     })

@@ -8,11 +8,13 @@ use nalgebra::Complex;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+use super::dot;
+use super::errors::Worked;
 use super::grid::{Grid, ending};
 use super::model::product;
-use super::modes::{ARTEFACT, GridMode, Motion, SEED, of_ends};
+use super::modes::{ARTEFACT, GridMode, GridModes, SEED};
+use super::motion::{Motion, of_ends};
 use super::real_shifts::balanced;
-use super::{SpectrumError, dot};
 use crate::cancellation::Cancellation;
 use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions};
 
@@ -54,7 +56,7 @@ pub(super) fn slowest(
     grid: &Grid,
     motion: &Motion,
     (rates, cancellation): (&RateOptions, &Cancellation),
-) -> Result<(Vec<GridMode>, AbsorbingWork), SpectrumError> {
+) -> Worked<GridModes> {
     let mut numbers = Xoshiro256PlusPlus::seed_from_u64(SEED);
     let mut random = || -> Vec<f64> {
         let cells = 0..grid.space.n_cells();
@@ -89,12 +91,12 @@ pub(super) fn slowest(
         work.passes += solver.work.passes;
         if stands {
             let found = last.and_then(|step| mode(grid, step, (&row, &column), motion));
-            return Ok((found.into_iter().collect(), work));
+            return Ok((GridModes::of(found), work));
         }
         let size = last.map_or(0.0, |step| step.value.abs());
         shift = size.max(NEAREST * motion.rate).min(shift);
     }
-    Ok((Vec::new(), work))
+    Ok((GridModes::default(), work))
 }
 
 /// The eigenvalue that two vectors give, and what half of the dissipation changes of it.

@@ -9,6 +9,7 @@ use pbif::stationary::generator::RateOptions;
 use pbif::system::Model;
 
 use crate::common::numbers::{Numbers, given};
+use crate::common::room::Room;
 use crate::common::steady::{even_cells, masses, model, random_linear};
 
 /// The slowest modes of a model on even cells.
@@ -142,6 +143,43 @@ fn a_lightly_damped_oscillator_has_the_sums_of_its_two() {
         hold(&format!("damping {damping}"), &found, &exact, (5e-2, 3.5));
         assert!(found.work.factorisations <= 30, "{:?}", found.work);
     }
+}
+
+const DAMPED: &str = r#"
+[system.equations]
+x = "y"
+y = "-x - 2 zeta y"
+[system.noise]
+y = "0.4"
+[system.parameters]
+zeta = 1.0
+[cells]
+x = { from = -1.6, to = 1.6, count = 36 }
+y = { from = -1.6, to = 1.6, count = 36 }
+[sweep]
+parameter = "zeta"
+from = 0.945
+to = 1.055
+points = 6
+[locate]
+tolerance = 2e-4
+[relaxation]
+modes = 2
+"#;
+
+/// At critical damping neither of the two modes is known well, and their discriminant is.
+#[test]
+fn the_damping_at_which_two_modes_become_a_pair_is_located() {
+    let room = Room::new();
+    room.write("damped.toml", DAMPED);
+    room.solved("sweep damped.toml --out run --quiet figures.draw=[]");
+    let row = &room.table("run/bifurcations.csv").0[1];
+    assert_eq!(row.texts(["label", "status"]), ["SB1", "located"]);
+    let [value, error] = ["value", "error"].map(|column| row.number(column));
+    assert!(
+        (value - 1.0).abs() <= error && error < 1e-3,
+        "{value} ± {error}"
+    );
 }
 
 /// The least eigenvalues above zero of dx = -U'(x) dt + √(2D) dW by a chain of states with rates that keep detailed

@@ -11,8 +11,7 @@ use crate::method::measures::{formula_measures, measures_of_slow_modes, switchin
 use crate::passage::KnownDensity;
 use crate::space::Axis;
 use crate::spectrum::{
-    EscapeFormulas, SlowMode, SlowModes, SpectrumError, Steady, escape_formulas, slow_modes,
-    switching,
+    EscapeFormulas, SlowModes, SpectrumError, Steady, escape_formulas, slow_modes, switching,
 };
 use crate::stationary::generator::{RateError, RateOptions};
 use crate::system::{BoundQuantity, DampedParticle, PassageStart, Region, System};
@@ -68,11 +67,10 @@ pub(super) fn add_slow_modes(
         }
         Some(Err(_)) | None => None,
     };
-    let told = found.iter().flat_map(|found| &found.modes).take(wanted);
-    let told: Vec<SlowMode> = told.copied().collect();
-    report.measures.extend(measures_of_slow_modes(&told));
-    if told.len() < wanted {
-        let known = told.len();
+    let told = found.iter();
+    (report.measures).extend(told.flat_map(|found| measures_of_slow_modes(found, wanted)));
+    let known = found.as_ref().map_or(0, |found| found.modes.len());
+    if known < wanted {
         report
             .findings
             .push(Finding::FewSlowModes { known, wanted });

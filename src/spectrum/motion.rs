@@ -1,0 +1,97 @@
+//! How fast and how far states move in a steady state, and what the ends of the range do to an eigenvalue.
+
+use super::Steady;
+use super::grid::Grid;
+use crate::space::CellSpace;
+use crate::system::System;
+
+/// What the ends do is an estimate: it is taken so many times.
+const SAFETY: f64 = 2.0;
+
+/// Masses below this are rounding.
+const NO_MASS: f64 = 1e-12;
+
+/// What the ends of the range do to an eigenvalue of a size, at most; `product` is |l r| at a cell. A wall at the
+/// distance b from the mean changes it by D l'(b) r(b). With l a polynomial and the density a Gaussian one of deviation σ that is, over the eigenvalue, the
+/// product l r at the end times σ²/b.
+pub(super) fn of_ends(
+    grid: &Grid,
+    size: f64,
+    product: impl Fn(usize) -> f64,
+    motion: &Motion,
+) -> f64 {
+    let (places, weights) = motion.at_ends(&grid.space);
+    let sizes = places.into_iter().zip(weights);
+    let share: f64 = sizes.map(|(cell, weight)| weight * product(cell)).sum();
+    share / motion.rate * size
+}
+
+/// How fast and how far states move in a steady state.
+pub(super) struct Motion {
+    /// Rate at which states change: the largest, over the axes, of the root mean square of the drift over the standard
+    /// deviation.
+    pub(super) rate: f64,
+    /// Per axis and end that is no wall of the system, the square of the standard deviation over the distance from the
+    /// mean to the end; zero at walls, and along series.
+    ends: Vec<[f64; 2]>,
+}
+
+impl Motion {
+    /// Of a steady state with these masses; `None` where nothing moves, or nothing is spread.
+    pub(super) fn new(grid: &Grid, system: &dyn System, steady: Steady<'_>) -> Option<Self> {
+        let whole: f64 = steady.masses.iter().map(|mass| mass.abs()).sum();
+        let axes = grid.space.axes();
+        let zeros = || vec![0.0; axes.len()];
+        let (mut drifts, mut means, mut squares) = (zeros(), zeros(), zeros());
+        for (cell, mass) in steady.masses.iter().enumerate() {
+            let share = mass.abs() / whole;
+            if share < NO_MASS {
+                continue;
+            }
+            let state = grid.space.centre(cell);
+            for (axis, drift) in system.drift_at(0.0, &state).into_iter().enumerate() {
+                drifts[axis] += share * drift * drift;
+                means[axis] += share * state[axis];
+                squares[axis] += share * state[axis] * state[axis];
+            }
+        }
+        let variance = |axis: usize| squares[axis] - means[axis] * means[axis];
+        let by_cells = (0..axes.len()).filter(|&axis| !axes[axis].is_modes());
+        let rates = by_cells.map(|axis| (drifts[axis] / variance(axis)).sqrt());
+        let rate = rates.filter(|rate| rate.is_finite()).reduce(f64::max)?;
+        let end = |axis: usize, end: usize| {
+            let is_wall = steady.closed.get(axis).is_none_or(|closed| closed[end]);
+            let at = [axes[axis].from(), axes[axis].to()][end];
+            if is_wall || axes[axis].is_modes() {
+                0.0
+            } else {
+                variance(axis) / (at - means[axis]).powi(2)
+            }
+        };
+        let ends = (0..axes.len()).map(|axis| [0, 1].map(|one| end(axis, one)));
+        (rate > 0.0).then(|| Self {
+            rate,
+            ends: ends.collect(),
+        })
+    }
+
+    /// Cells at ends that are no walls, with what the product of a row and a column there counts in a number: a rate.
+    pub(super) fn at_ends(&self, space: &CellSpace) -> (Vec<usize>, Vec<f64>) {
+        let mut found = (Vec::new(), Vec::new());
+        for (index, (axis, ends)) in space.axes().iter().zip(&self.ends).enumerate() {
+            for (position, &ratio) in [0, axis.count() - 1].into_iter().zip(ends) {
+                if ratio == 0.0 {
+                    continue;
+                }
+                let weight = SAFETY * 0.5 * axis.count() as f64 * ratio * self.rate;
+                for cell in
+                    (0..space.n_cells()).filter(|&cell| space.position(cell, index) == position)
+                {
+                    found.0.push(cell);
+                    found.1.push(weight);
+                }
+            }
+        }
+        found
+    }
+}
