@@ -66,10 +66,12 @@ impl<'a> Shifted<'a> {
         let starts = starts.raw_storage();
         let mut rates: Vec<Complex<f64>> = matrix.data().iter().map(|&one| one.into()).collect();
         for column in 0..matrix.cols() {
-            for entry in starts[column]..starts[column + 1] {
-                if matrix.indices()[entry] == column {
-                    rates[entry] -= shift;
-                }
+            let entries = starts[column]..starts[column + 1];
+            let own = matrix.indices()[entries.clone()]
+                .iter()
+                .position(|&row| row == column);
+            if let Some(own) = own {
+                rates[entries.start + own] -= shift;
             }
         }
         Ok(Self {
@@ -110,7 +112,9 @@ impl<'a> Shifted<'a> {
                 .zip(&residual)
                 .for_each(|(x, change)| *x += change);
             residual = self.residual(right, &solved, is_transposed);
-            if !(length(&residual) > TOLERANCE * size) {
+            // Also where it is no number.
+            let is_large = length(&residual) > TOLERANCE * size;
+            if !is_large {
                 break;
             }
         }
