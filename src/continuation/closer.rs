@@ -154,8 +154,8 @@ impl<'p, 'a> Closer<'p, 'a> {
     }
 
     /// What the sweep counts at the ends of a stretch, if finer cells count the same, or what an earlier look whose
-    /// rows are kept has counted there. Where the sweep's cells are wide at its own end they are not sure of what is there:
-    /// finer ones are believed that are not, or that count what others have counted before.
+    /// rows are kept has counted there. Where the sweep's cells are wide at its own end they are not sure of what is
+    /// there: finer ones are believed that are not, or that count what others have counted before.
     fn ends(
         &mut self,
         found: &Found,

@@ -1,6 +1,7 @@
 //! The rows of a sweep: every change of signature with its value, error, bracket and status.
 
 use super::at_rest::beside_fixed_point;
+use super::bands::{band, by_bracket, by_persistence};
 use super::change::{Change, changes};
 use super::d_bifurcations::d_bifurcations;
 use super::doubt::MOST_TIMES;
@@ -13,8 +14,8 @@ use super::levels::{asked_of, crossings};
 use super::measure::NUMERICAL_DIFFUSION;
 use super::root::{Root, root};
 use super::rows::{doubt_what_does_not_continue, in_order, inseparable, merge, without_flicker};
-use super::{CellCheck, ErrorParts, Finding, Goal, Point, Subject, persistence};
-use crate::density::{EstimatedDensity, Kink, Observable};
+use super::{CellCheck, ErrorParts, Finding, Goal, Point, Subject};
+use crate::density::{EstimatedDensity, Kink};
 use crate::topology::{Detector, Indicator};
 
 /// All labelled points of a sweep, in ascending parameter. `points` must be ascending.
@@ -78,79 +79,6 @@ pub(super) fn label_points(
     let levels = levels.map(|row| Label::Level(Box::new(row)));
     let others = label::end_points(points).chain(label::failures(points));
     label::number(others.chain(rows).chain(levels).collect())
-}
-
-/// A row that no indicator tells the value of.
-fn band(
-    observables: &[Observable],
-    change: &Change,
-    (lower, value, upper): (f64, f64, f64),
-    doubt: Option<Doubt>,
-) -> Located {
-    Located {
-        label: String::new(),
-        value,
-        error: (value - lower).max(upper - value),
-        lower,
-        upper,
-        observable: observables[change.observable],
-        before: change.before,
-        after: change.after,
-        zero: None,
-        is_several: false,
-        doubts: doubt.into_iter().collect(),
-    }
-}
-
-/// An indicator was lost between two points, or between one of two pairs of neighbours and the other: its zero lies
-/// there, or between there and where the signature changes. `lost` has the lower point of each pair.
-fn by_bracket(
-    points: &[&Point],
-    observables: &[Observable],
-    change: &Change,
-    lost: [usize; 2],
-    doubt: Doubt,
-) -> Located {
-    let ends = lost.iter().flat_map(|&at| [at, at + 1]);
-    let places = ends.chain([change.left, change.right]);
-    let values = places.map(|place| points[place].value);
-    let (lower, upper) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-        (low.min(value), high.max(value))
-    });
-    Located {
-        error: 0.5 * (upper - lower),
-        ..band(
-            observables,
-            change,
-            (lower, 0.5 * (lower + upper), upper),
-            Some(doubt),
-        )
-    }
-}
-
-fn by_persistence(
-    points: &[&Point],
-    observables: &[Observable],
-    change: &Change,
-    detector: &dyn Detector,
-) -> Located {
-    // Counting follows what cells or samples show, and nothing says how far that is from the truth.
-    let found = persistence::band(points, change.observable, change.left, detector.doubt());
-    // Signatures that were not seen whole say nothing of where in between.
-    let upper = if change.right == change.left + 1 {
-        found.upper
-    } else {
-        found.upper.max(points[change.right].value)
-    };
-    let doubt = if found.sinks {
-        Doubt::TooLow
-    } else if found.resolved_by_cells {
-        Doubt::NoIndicator
-    } else {
-        Doubt::FewCellsApart
-    };
-    let place = (found.lower, found.value, upper);
-    band(observables, change, place, Some(doubt))
 }
 
 pub(super) fn by_indicator(

@@ -33,6 +33,7 @@
 
 mod again;
 mod at_rest;
+mod bands;
 mod beside;
 mod bracket;
 mod change;

@@ -1,10 +1,11 @@
 //! `densities.zarr`: marginal and joint densities of a sweep as a Zarr v3 store that `xarray.open_zarr` reads as it is.
 //!
-//! What the arrays are is said in `arrays`. The store is written at once; until then the journal holds all densities. It
-//! is made beside its place and put there when it is whole.
+//! What the arrays are is said in `arrays`. The store is written at once; until then the journal holds all densities.
+//! It is made beside its place and put there when it is whole.
 //!
-//! An array is divided into a file a value where few of its values have numbers, or where the whole store has few values:
-//! damage to a file then costs one value, and what has no numbers takes no room. Else it is one file, or a few large ones.
+//! An array is divided into a file a value where few of its values have numbers, or where the whole store has few
+//! values: damage to a file then costs one value, and what has no numbers takes no room. Else it is one file, or a few
+//! large ones.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -59,7 +60,8 @@ pub(super) fn write_store(
     rename(&fresh, path)
 }
 
-/// Values of a density, counted over all arrays, up to which each is a file: a run then has no more than about 60 files.
+/// Values of a density, counted over all arrays, up to which each is a file: a run then has no more than about 60
+/// files.
 const MOST_FILES: usize = 36;
 
 /// Values of one array with numbers up to which each is a file, where others have none.

@@ -1,10 +1,10 @@
 //! Increments for laws: four-point numbers in place of standard normals, many from one random word.
 //!
-//! Weak order 2 asks of a step's increment no more than the first five moments of a normal one (Kloeden and Platen 1992,
-//! section 14.2; G. N. Milstein and M. V. Tretyakov, *Stochastic Numerics for Mathematical Physics*, 2004). With
-//! probability 1/8 it is ±√(1 + √14), else ±√(1 - √14/7): mean square 1 and fourth moment 3, as of a normal number, and a
-//! sixth moment of 13.4 where that has 15. Four random bits make one, where a normal number takes a word, a logarithm and
-//! a root.
+//! Weak order 2 asks of a step's increment no more than the first five moments of a normal one (Kloeden and Platen
+//! 1992, section 14.2; G. N. Milstein and M. V. Tretyakov, *Stochastic Numerics for Mathematical Physics*, 2004). With
+//! probability 1/8 it is ±√(1 + √14), else ±√(1 - √14/7): mean square 1 and fourth moment 3, as of a normal number, and
+//! a sixth moment of 13.4 where that has 15. Four random bits make one, where a normal number takes a word, a logarithm
+//! and a root.
 
 /// √(1 + √14).
 const WIDE: f64 = 2.177_534_703_919_536;

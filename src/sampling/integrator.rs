@@ -2,8 +2,8 @@
 //!
 //! Stochastic Heun averages the drift at the start of a step and at its Euler-Maruyama predictor, with the noise
 //! amplitude taken at the start (Itô). For additive noise its weak order is 2; of an undamped oscillator it takes
-//! ω⁴dt³/4 from the damping. Euler-Maruyama has weak order 1 and takes ω²dt. Where laws alone are asked for, increments of
-//! four values (`four_point.rs`) do for Heun what normal ones do.
+//! ω⁴dt³/4 from the damping. Euler-Maruyama has weak order 1 and takes ω²dt. Where laws alone are asked for, increments
+//! of four values (`four_point.rs`) do for Heun what normal ones do.
 
 use multiversion::multiversion;
 

@@ -16,8 +16,8 @@
 //! reported, not averaged.
 //!
 //! **Laws, not paths.** A map needs where trajectories end, as a law. Increments with the first five moments of normal
-//! ones give it to the same weak order, from four random bits a step. Whatever compares paths (halving a step, passages)
-//! has normal increments.
+//! ones give it to the same weak order, from four random bits a step. Whatever compares paths (halving a step,
+//! passages) has normal increments.
 
 #[cfg(test)]
 mod accuracy_tests;

@@ -42,10 +42,13 @@ pub(super) fn near_harmonics(
     let mut found = GridModel::default();
     let pattern = ShiftedPattern::new(&grid.space, &grid.full);
     let mut places: Vec<f64> = (0..=REACH as usize).map(|k| k as f64 * rate).collect();
-    if places.len() as u64 * pattern.bytes() > rates.memory_limit_bytes {
+    // The grids of a value are solved side by side, and all of them together are less than twice the largest.
+    if 2 * places.len() as u64 * pattern.bytes() > rates.memory_limit_bytes {
         return Ok(found);
     }
     let mut steady = Vec::new();
+    // What the model had before the last vectors were added.
+    let mut seen = Vec::new();
     for solves in ROUNDS {
         let beside = |&place: &f64| {
             let shift = Complex::new(BESIDE * rate, place);
@@ -58,9 +61,7 @@ pub(super) fn near_harmonics(
         if steady.is_empty() {
             steady = rows[0].steady();
         }
-        let mut seen = Vec::new();
         for solve in 1..=solves {
-            let before = found.columns.vectors.len();
             for row in &mut rows {
                 row.grow(&steady, &mut found)?;
                 cancellation.check().map_err(RateError::from)?;
@@ -69,8 +70,8 @@ pub(super) fn near_harmonics(
                 continue;
             }
             (found.products).grow(&found.rows, &found.columns, [&grid.full, &grid.half]);
-            seen = slowest(&found.products, found.columns.vectors.len(), rate);
-            let fewer = slowest(&found.products, before, rate);
+            let size = found.columns.vectors.len();
+            let fewer = std::mem::replace(&mut seen, slowest(&found.products, size, rate));
             found.modes = standing(&seen, &fewer);
             if found.modes.len() >= wanted {
                 break;

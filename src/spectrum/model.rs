@@ -142,8 +142,8 @@ impl Products {
     }
 }
 
-/// Spaces of either side, what a generator and another one do between them, and the modes that are told by it, each with
-/// what fewer vectors change.
+/// Spaces of either side, what a generator and another one do between them, and the modes that are told by it, each
+/// with what fewer vectors change.
 #[derive(Default)]
 pub(super) struct GridModel {
     pub(super) columns: Basis,

@@ -12,8 +12,8 @@ const SAFETY: f64 = 2.0;
 const NO_MASS: f64 = 1e-12;
 
 /// What the ends of the range do to an eigenvalue of a size, at most; `product` is |l r| at a cell. A wall at the
-/// distance b from the mean changes it by D l'(b) r(b). With l a polynomial and the density a Gaussian one of deviation σ that is, over the eigenvalue, the
-/// product l r at the end times σ²/b.
+/// distance b from the mean changes it by D l'(b) r(b). With l a polynomial and the density a Gaussian one of deviation
+/// σ that is, over the eigenvalue, the product l r at the end times σ²/b.
 pub(super) fn of_ends(
     grid: &Grid,
     size: f64,

@@ -365,7 +365,8 @@ fn measured<const N: usize>(text: &str, names: [&str; N]) -> [pbif::continuation
     })
 }
 
-/// Duffing's well, ΔV = 1/4, with damping g from 0.5 on, at a temperature, on n × n cells; passages between two regions.
+/// Duffing's well, ΔV = 1/4, with damping g from 0.5 on, at a temperature, on n × n cells; passages between two
+/// regions.
 fn well(temperature: f64, [x, y]: [f64; 2], n: usize, [left, right]: [&str; 2]) -> String {
     format!(
         r#"

@@ -16,7 +16,7 @@ use crate::cancellation::Cancellation;
 use crate::space::CellSpace;
 
 /// Residual, relative to the right side, at which a solve is good enough.
-const TOLERANCE: f64 = 1e-10;
+const TOLERANCE: f64 = 1e-9;
 
 /// Passes of refinement at most.
 const PASSES: usize = 8;
