@@ -107,7 +107,13 @@ pub(super) fn by_indicator(
         let is_wide = [a, b].into_iter().any(has_wide_cells);
         let is_order_known = is_forced || !(options.is_closer || is_wide);
         let share = share_of_distance(subject.cell_check, is_order_known);
-        let cells = (density, subject.cell_check, share, is_forced);
+        let cells = Cells {
+            density,
+            check: subject.cell_check,
+            share,
+            is_forced,
+            is_wide: is_wide && !is_forced,
+        };
         on_finer_cells(&mut zero, &checked, cells, options, checks)
     });
     let on_finer = on_finer.flatten();
@@ -189,15 +195,27 @@ fn fall(check: CellCheck) -> f64 {
     }
 }
 
+/// The cells that a zero was found on.
+struct Cells<'a> {
+    density: &'a EstimatedDensity,
+    check: CellCheck,
+    /// What is claimed of the distance to finer cells.
+    share: f64,
+    is_forced: bool,
+    /// Whether they are so wide that errors may fall by any order, and two grids agree by chance.
+    is_wide: bool,
+}
+
 /// Moves a zero to where finer cells have it, and finer ones again where their error exceeds the tolerance; returns how
 /// often they were refined, or what they say against it.
 fn on_finer_cells(
     zero: &mut Root,
     checked: &Checked<'_>,
-    (density, check, share, is_forced): (&EstimatedDensity, CellCheck, f64, bool),
+    cells: Cells<'_>,
     options: &Goal,
     checks: &mut dyn Checks,
 ) -> Option<Result<u8, Doubt>> {
+    let Cells { density, share, .. } = cells;
     let chance = by_chance(density, checked.place);
     let (mut own, mut expected) = (zero.error.grid, 0.0);
     let mut found = None;
@@ -210,16 +228,17 @@ fn on_finer_cells(
             Some(Ok(finer)) => {
                 let distance = share * chance * (finer.value - zero.value).abs();
                 // What a forcing carries to and fro is off by no more than the schemes differ on the finer cells, of
-                // which the value is.
-                let least = if is_forced {
+                // which the value is. Where cells are wide it may be off by as much.
+                let least = if cells.is_forced || cells.is_wide {
                     finer.error
                 } else {
                     own.max(finer.error)
                 };
-                let grid = distance.max(expected);
+                let by_schemes = if cells.is_wide { finer.error } else { 0.0 };
+                let grid = distance.max(expected).max(by_schemes);
                 zero.error.grid = at_least(grid, (own, least), chance, density, options);
                 zero.value = finer.value;
-                (own, expected) = (finer.error, distance / fall(check));
+                (own, expected) = (finer.error, distance / fall(cells.check));
                 found = Some(Ok(times));
             }
             // What cannot be solved on so many cells says nothing against fewer.

@@ -25,7 +25,7 @@ struct Kind {
 }
 
 const SWEEP: &str = "sweep sweeps/coulomb_fc.toml cells.x.count=24 cells.y.count=24 sweep.points=9 \
-                     locate.tolerance=1e-3 figures.formats=[\"svg\"]";
+                     locate.tolerance=1e-3 locate.effort=0.1 figures.formats=[\"svg\"]";
 
 const KINDS: [Kind; 5] = [
     Kind {

@@ -6,11 +6,11 @@ use std::collections::BTreeMap;
 use crate::common::room::{Printed, Room, assert_same};
 use crate::common::table::Table;
 
-const GENERATOR: &str =
-    "method.kind=generator cells.x.count=24 cells.y.count=24 sweep.points=4 locate.tolerance=5e-3";
+const GENERATOR: &str = "method.kind=generator cells.x.count=24 cells.y.count=24 sweep.points=4 locate.tolerance=5e-3 locate.effort=0.1";
 /// So narrow ranges that what leaves them, most of it along y, is the reason of a row.
 const ESCAPING: &str = "method.kind=generator cells.x={from=-5.5,to=5.5,count=30} \
-                        cells.y={from=-5.5,to=5.5,count=30} sweep.points=7 locate.tolerance=1e-3";
+                        cells.y={from=-5.5,to=5.5,count=30} sweep.points=7 locate.tolerance=1e-3 \
+                        locate.effort=0";
 /// Damped well, so that trajectories forget their start soon, with the same ratios of noise and friction to damping.
 const SAMPLED: &str = "method.kind=sgcm system.parameters.kappa=0.1 system.parameters.sigma2=0.1 sweep.from=-0.2 \
                        sweep.to=0.1 cells.x.count=24 cells.y={from=-5.5,to=5.5,count=24} sweep.points=4 \
