@@ -30,7 +30,7 @@ const BESIDE: f64 = 1e-3;
 /// Inverse iterations at the shift beside zero that leave the steady state alone.
 const TO_STEADY: usize = 8;
 
-/// The slowest modes of those that oscillate no faster than about `REACH` times the rate of the motion, up to the first
+/// The slowest modes of those that oscillate no faster than almost `REACH` times the rate of the motion, up to the first
 /// that does not stand; none where the factors of all shifts together exceed the limit of memory.
 pub(super) fn near_harmonics(
     grid: &Grid,
@@ -41,7 +41,10 @@ pub(super) fn near_harmonics(
 ) -> Result<GridModel, SpectrumError> {
     let mut found = GridModel::default();
     let pattern = ShiftedPattern::new(&grid.space, &grid.full);
-    let mut places: Vec<f64> = (0..=REACH as usize).map(|k| k as f64 * rate).collect();
+    let fastest = fastest(rate);
+    let mut places = multiples(rate, fastest);
+    // Another grid may have the modes of the rows in another order, and a mode more of each beside those wanted.
+    let wanted = wanted + places.len();
     // The grids of a value are solved side by side, and all of them together are less than twice the largest.
     if 2 * places.len() as u64 * pattern.bytes() > rates.memory_limit_bytes {
         return Ok(found);
@@ -71,7 +74,7 @@ pub(super) fn near_harmonics(
             }
             (found.products).grow(&found.rows, &found.columns, [&grid.full, &grid.half]);
             let size = found.columns.vectors.len();
-            let fewer = std::mem::replace(&mut seen, slowest(&found.products, size, rate));
+            let fewer = std::mem::replace(&mut seen, slowest(&found.products, size, fastest));
             found.modes = standing(&seen, &fewer);
             if found.modes.len() >= wanted {
                 break;
@@ -81,16 +84,27 @@ pub(super) fn near_harmonics(
         if found.modes.len() >= wanted {
             break;
         }
-        places = slowest_of_rows(&seen, rate);
+        places = slowest_of_rows(&seen, rate, &multiples(rate, fastest));
     }
     in_order(&mut found.modes, |(value, _)| *value);
     Ok(found)
 }
 
-/// Eigenvalues of the model of so many vectors, in the order of their decay rates.
-fn slowest(products: &Products, size: usize, rate: f64) -> Vec<Complex<f64>> {
+/// The frequency up to which modes are told: that of what lies on the imaginary axis as far from a shift at the rate of
+/// the motion as modes are looked for.
+fn fastest(rate: f64) -> f64 {
+    (REACH * REACH - 1.0).sqrt() * rate
+}
+
+/// Multiples of the rate of the motion up to a frequency.
+fn multiples(rate: f64, fastest: f64) -> Vec<f64> {
+    let all = (0..).map(|k| f64::from(k) * rate);
+    all.take_while(|&one| one <= fastest).collect()
+}
+
+/// Eigenvalues of the model of so many vectors that oscillate no faster than this, in the order of their decay rates.
+fn slowest(products: &Products, size: usize, fastest: f64) -> Vec<Complex<f64>> {
     let all = products.model(size).as_ref().map(ReducedModel::eigenvalues);
-    let fastest = (REACH + 0.5) * rate;
     let is_asked = |one: &Complex<f64>| one.re < 0.0 && one.im <= fastest;
     let mut all: Vec<Complex<f64>> = all.into_iter().flatten().filter(is_asked).collect();
     all.sort_by(|a, b| b.re.total_cmp(&a.re));
@@ -108,15 +122,14 @@ fn standing(all: &[Complex<f64>], fewer: &[Complex<f64>]) -> Vec<(Complex<f64>, 
 }
 
 /// The frequency of the slowest mode near each multiple of the rate of the motion.
-fn slowest_of_rows(all: &[Complex<f64>], rate: f64) -> Vec<f64> {
-    let multiples = (0..=REACH as usize).map(|k| k as f64 * rate);
-    let of_row = multiples.map(|multiple| {
+fn slowest_of_rows(all: &[Complex<f64>], rate: f64, multiples: &[f64]) -> Vec<f64> {
+    let of_row = |&multiple: &f64| {
         let mut near = all
             .iter()
             .filter(|one| (one.im - multiple).abs() <= 0.5 * rate);
         near.next().map_or(multiple, |one| one.im)
-    });
-    of_row.collect()
+    };
+    multiples.iter().map(of_row).collect()
 }
 
 /// A shift, and the last vectors of Krylov's spaces of both sides there.

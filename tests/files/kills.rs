@@ -77,8 +77,14 @@ fn files(room: &Room, folder: &str) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
-/// Files that say when a job began and ended, in whole seconds: two short jobs may share them by chance.
-const DATED: [&str; 3] = ["run.json", "ro-crate-metadata.json", "checksums.sha256"];
+/// Files that say when a job began and ended in whole seconds, or how long a value took in thousandths: two short jobs
+/// may share them by chance.
+const DATED: [&str; 4] = [
+    "run.json",
+    "ro-crate-metadata.json",
+    "checksums.sha256",
+    "points.csv",
+];
 
 /// What is left of a job that was not killed.
 struct Whole {
