@@ -30,8 +30,8 @@ const BESIDE: f64 = 1e-3;
 /// Inverse iterations at the shift beside zero that leave the steady state alone.
 const TO_STEADY: usize = 8;
 
-/// The slowest modes of those that oscillate no faster than almost `REACH` times the rate of the motion, up to the first
-/// that does not stand; none where the factors of all shifts together exceed the limit of memory.
+/// The slowest modes of those that oscillate no faster than almost `REACH` times the rate of the motion, up to the
+/// first that does not stand; none where the factors of all shifts together exceed the limit of memory.
 pub(super) fn near_harmonics(
     grid: &Grid,
     (wanted, rate): (usize, f64),
