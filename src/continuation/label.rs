@@ -2,6 +2,7 @@
 
 use super::LevelCrossing;
 use super::doubt::{BifurcationStatus, Doubt, status_of};
+use super::levels::SpectralChange;
 use super::{ErrorParts, Point};
 use crate::density::Observable;
 use crate::system::Family;
@@ -135,7 +136,7 @@ impl Label {
                 } else {
                     (above, below)
                 };
-                let of_modes = of.is_empty();
+                let of_modes = change == SpectralChange::Pair;
                 Some(RowWords {
                     of: if of_modes {
                         "slow modes".to_owned()

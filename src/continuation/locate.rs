@@ -228,12 +228,13 @@ fn on_finer_cells(
             Some(Ok(finer)) => {
                 let distance = share * chance * (finer.value - zero.value).abs();
                 // What a forcing carries to and fro is off by no more than the schemes differ on the finer cells, of
-                // which the value is. Where cells are wide it may be off by as much.
-                let least = if cells.is_forced || cells.is_wide {
+                // which the value is.
+                let least = if cells.is_forced {
                     finer.error
                 } else {
                     own.max(finer.error)
                 };
+                // Where cells are wide it may be off by as much as that.
                 let by_schemes = if cells.is_wide { finer.error } else { 0.0 };
                 let grid = distance.max(expected).max(by_schemes);
                 zero.error.grid = at_least(grid, (own, least), chance, density, options);

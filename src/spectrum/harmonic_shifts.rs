@@ -12,7 +12,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::SpectrumError;
 use super::grid::Grid;
-use super::model::{GridModel, Products, REACH, ReducedModel, TOLERANCE, in_order};
+use super::model::{GridModel, Products, REACH, ReducedModel, in_order, standing};
 use crate::cancellation::Cancellation;
 use crate::stationary::generator::{
     AbsorbingWork, RateError, RateOptions, Shifted, ShiftedPattern,
@@ -56,17 +56,17 @@ pub(super) fn near_harmonics(
         let beside = |&place: &f64| {
             let shift = Complex::new(BESIDE * rate, place);
             let solver = Shifted::new(&pattern, &grid.full, shift, cancellation)?;
-            Ok(Row::new(solver, numbers))
+            Ok(KrylovSpaces::new(solver, numbers))
         };
-        let rows: Result<Vec<Row<'_>>, RateError> = places.iter().map(beside).collect();
-        let mut rows = rows?;
-        work.factorisations += rows.len();
+        let shifts: Result<Vec<KrylovSpaces<'_>>, RateError> = places.iter().map(beside).collect();
+        let mut shifts = shifts?;
+        work.factorisations += shifts.len();
         if steady.is_empty() {
-            steady = rows[0].steady();
+            steady = shifts[0].steady();
         }
         for solve in 1..=solves {
-            for row in &mut rows {
-                row.grow(&steady, &mut found)?;
+            for at_shift in &mut shifts {
+                at_shift.grow(&steady, &mut found)?;
                 cancellation.check().map_err(RateError::from)?;
             }
             if solve < FIRST_LOOK {
@@ -80,7 +80,7 @@ pub(super) fn near_harmonics(
                 break;
             }
         }
-        work.passes += rows.iter().map(|row| row.solver.passes).sum::<usize>();
+        work.passes += shifts.iter().map(|one| one.solver.passes).sum::<usize>();
         if found.modes.len() >= wanted {
             break;
         }
@@ -111,16 +111,6 @@ fn slowest(products: &Products, size: usize, fastest: f64) -> Vec<Complex<f64>> 
     all
 }
 
-/// Eigenvalues up to the first that fewer vectors do not give as well, each with what they change.
-fn standing(all: &[Complex<f64>], fewer: &[Complex<f64>]) -> Vec<(Complex<f64>, f64)> {
-    let change = |value: &Complex<f64>| {
-        let distances = fewer.iter().map(|other| (value - other).norm());
-        (*value, distances.fold(f64::INFINITY, f64::min))
-    };
-    let stands = |(value, change): &(Complex<f64>, f64)| *change <= TOLERANCE * value.norm();
-    all.iter().map(change).take_while(stands).collect()
-}
-
 /// The frequency of the slowest mode near each multiple of the rate of the motion.
 fn slowest_of_rows(all: &[Complex<f64>], rate: f64, multiples: &[f64]) -> Vec<f64> {
     let of_row = |&multiple: &f64| {
@@ -133,7 +123,7 @@ fn slowest_of_rows(all: &[Complex<f64>], rate: f64, multiples: &[f64]) -> Vec<f6
 }
 
 /// A shift, and the last vectors of Krylov's spaces of both sides there.
-struct Row<'a> {
+struct KrylovSpaces<'a> {
     solver: Shifted<'a>,
     column: Vec<Complex<f64>>,
     row: Vec<Complex<f64>>,
@@ -141,7 +131,7 @@ struct Row<'a> {
     known: [Vec<Vec<Complex<f64>>>; 2],
 }
 
-impl<'a> Row<'a> {
+impl<'a> KrylovSpaces<'a> {
     /// Which begins with vectors at random.
     fn new(solver: Shifted<'a>, numbers: &mut Xoshiro256PlusPlus) -> Self {
         let cells = solver.cells();

@@ -16,7 +16,7 @@ const SPANNED: f64 = 1e-12;
 pub(super) const REACH: f64 = 3.0;
 
 /// Relative change by more vectors at which an eigenvalue stands.
-pub(super) const TOLERANCE: f64 = 1e-7;
+const TOLERANCE: f64 = 1e-7;
 
 /// Decay rates that differ by less, relatively, are in the order of their frequencies.
 const SAME: f64 = 1e-2;
@@ -150,6 +150,16 @@ pub(super) struct GridModel {
     pub(super) rows: Basis,
     pub(super) products: Products,
     pub(super) modes: Vec<(Complex<f64>, f64)>,
+}
+
+/// Eigenvalues up to the first that fewer vectors do not give as well, each with what they change.
+pub(super) fn standing(all: &[Complex<f64>], fewer: &[Complex<f64>]) -> Vec<(Complex<f64>, f64)> {
+    let change = |value: &Complex<f64>| {
+        let distances = fewer.iter().map(|other| (value - other).norm());
+        (*value, distances.fold(f64::INFINITY, f64::min))
+    };
+    let stands = |(value, change): &(Complex<f64>, f64)| *change <= TOLERANCE * value.norm();
+    all.iter().map(change).take_while(stands).collect()
 }
 
 /// Puts modes in the order of their decay rates, of those with the same one in the order of their frequencies.

@@ -8,7 +8,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::SpectrumError;
 use super::grid::{Grid, ending};
-use super::model::{GridModel, Products, REACH, ReducedModel, TOLERANCE, in_order};
+use super::model::{GridModel, Products, REACH, ReducedModel, in_order, standing};
 use crate::cancellation::Cancellation;
 use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions};
 
@@ -113,13 +113,8 @@ impl Standing {
         let away = |value: Complex<f64>| (value - shift).norm();
         let mut all: Vec<Complex<f64>> = all.into_iter().filter(|one| one.re < 0.0).collect();
         all.sort_by(|a, b| away(*a).total_cmp(&away(*b)));
-        let change = |value: Complex<f64>| {
-            let distances = fewer.iter().map(|other| (value - other).norm());
-            (value, distances.fold(f64::INFINITY, f64::min))
-        };
-        let stands = |(value, change): &(Complex<f64>, f64)| *change <= TOLERANCE * value.norm();
         let farthest = all.len();
-        let mut modes: Vec<_> = all.into_iter().map(change).take_while(stands).collect();
+        let mut modes = standing(&all, &fewer);
         let within = modes
             .iter()
             .filter(|(value, _)| away(*value) <= REACH * shift)

@@ -33,15 +33,15 @@ const STEPS: usize = 12;
 /// of it does.
 const TOLERANCE: (f64, f64) = (1e-9, 1e-5);
 
-/// What a step gives.
+/// The two-sided Rayleigh quotient of a row and a column.
 #[derive(Clone, Copy)]
-struct Step {
+struct RayleighQuotient {
     value: f64,
     /// What half of the dissipation changes.
     change: f64,
 }
 
-impl Step {
+impl RayleighQuotient {
     /// How far it is from another, relative to the eigenvalue, in what is allowed; NaN where one is no number.
     fn off(self, other: Self) -> f64 {
         let size = self.value.abs();
@@ -64,7 +64,7 @@ pub(super) fn slowest(
     };
     let (mut column, mut row) = (balanced(random()), balanced(random()));
     let mut work = AbsorbingWork::default();
-    let mut last: Option<Step> = None;
+    let mut last: Option<RayleighQuotient> = None;
     let mut shift = FIRST * motion.rate;
     for _ in 0..SHIFTS {
         let (matrix, ends) = ending(&grid.full, shift);
@@ -100,10 +100,10 @@ pub(super) fn slowest(
 }
 
 /// The eigenvalue that two vectors give, and what half of the dissipation changes of it.
-fn of_vectors(grid: &Grid, row: &[f64], column: &[f64]) -> Step {
+fn of_vectors(grid: &Grid, row: &[f64], column: &[f64]) -> RayleighQuotient {
     let overlap = dot(row, column);
     let [full, half] = [&grid.full, &grid.half].map(|matrix| dot(row, &product(matrix, column)));
-    Step {
+    RayleighQuotient {
         value: full / overlap,
         change: (half - full) / overlap,
     }
@@ -112,7 +112,7 @@ fn of_vectors(grid: &Grid, row: &[f64], column: &[f64]) -> Step {
 /// The mode, unless it is none of the equation.
 fn mode(
     grid: &Grid,
-    step: Step,
+    step: RayleighQuotient,
     (row, column): (&[f64], &[f64]),
     motion: &Motion,
 ) -> Option<GridMode> {

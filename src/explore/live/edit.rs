@@ -29,7 +29,7 @@ struct Edited {
 
 /// A sweep file to start from.
 #[derive(Debug, Serialize)]
-struct Start {
+struct StartingText {
     name: &'static str,
     title: &'static str,
     text: &'static str,
@@ -78,7 +78,7 @@ impl Live {
     /// The sweep files to start from.
     pub(in crate::explore) fn starts(&self, _body: &[u8]) -> Vec<u8> {
         answer(|| {
-            let start = |file: &crate::sweep_file::StartingFile| Start {
+            let start = |file: &crate::sweep_file::StartingFile| StartingText {
                 name: file.name,
                 title: file.title(),
                 text: file.text,
