@@ -81,6 +81,23 @@ pub(crate) fn plain(text: &str) -> String {
     escaped
 }
 
+/// A unit such as `1/t^2`, with its powers raised.
+pub(crate) fn unit(text: &str) -> String {
+    let mut parts = text.split('^');
+    let mut markup = plain(parts.next().unwrap_or_default());
+    for part in parts {
+        let digits = part.find(|letter: char| !letter.is_ascii_digit());
+        let (power, rest) = part.split_at(digits.unwrap_or(part.len()));
+        markup += &if power.is_empty() {
+            plain("^")
+        } else {
+            format!("^{{{power}}}")
+        };
+        markup += &plain(rest);
+    }
+    markup
+}
+
 /// A number with a real minus sign and never a negative zero.
 fn with_minus(digits: &str) -> String {
     match digits.strip_prefix('-') {
@@ -159,6 +176,18 @@ mod tests {
             ("2".to_owned(), Script::Upper, false),
         ];
         assert_eq!(shape("$σ^{2}$"), expected);
+    }
+
+    #[test]
+    fn powers_of_units_are_raised() {
+        let text = |letters: &str, script| (letters.to_owned(), script, false);
+        let expected = vec![
+            text("x_1", Script::Base),
+            text("2", Script::Upper),
+            text("/t", Script::Base),
+        ];
+        assert_eq!(shape(&unit("x_1^2/t")), expected);
+        assert_eq!(shape(&unit("a^b")), vec![text("a^b", Script::Base)]);
     }
 
     #[test]

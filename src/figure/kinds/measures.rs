@@ -155,7 +155,7 @@ fn draw(result: &SweepResult, all: &[MeasureSeries], (height, print): (f64, &Pri
         let unit = if one.unit == "1" {
             String::new()
         } else {
-            format!(" [{}]", one.unit)
+            format!(" [{}]", symbols::unit(&one.unit))
         };
         let errors: Vec<f64> = values.clone().map(|(_, _, error)| *error).collect();
         let mut curves = vec![Curve {
@@ -166,7 +166,7 @@ fn draw(result: &SweepResult, all: &[MeasureSeries], (height, print): (f64, &Pri
         }];
         curves.extend(levels(result, one));
         Track {
-            title: format!("{}{}", title(result, &one.name), symbols::plain(&unit)),
+            title: format!("{}{unit}", title(result, &one.name)),
             is_logarithmic: one.is_over_decades(),
             has_zero: false,
             least: errors
