@@ -26,7 +26,7 @@ pub(super) struct InDoubt<'p> {
 }
 
 /// How often cells are refined at most where nothing is counted.
-const MOST_TIMES: u8 = 3;
+const MOST_UNCOUNTED: u8 = 3;
 
 impl<'p> InDoubt<'p> {
     /// Of a sweep that watches these, with so long a step.
@@ -51,7 +51,7 @@ impl<'p> InDoubt<'p> {
             .iter()
             .filter(|row| row.observable == of.1 && is_of_cells(row));
         let unsure = self.unsure.iter().chain(&self.wide);
-        let unsure = unsure.filter(|one| one.0 == of.0 && times <= MOST_TIMES);
+        let unsure = unsure.filter(|one| one.0 == of.0 && times <= MOST_UNCOUNTED);
         let in_doubt = (in_doubt.map(hull)).chain(unsure.map(|one| [one.1; 2]));
         let mut in_doubt: Vec<[f64; 2]> = in_doubt.collect();
         in_doubt.sort_by(|a, b| a[0].total_cmp(&b[0]));
