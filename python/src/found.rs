@@ -351,7 +351,7 @@ impl Found {
                 self.keep();
             })?;
         let plane = match found {
-            Some(tree) => Plane::of_curves(&sweep, (plane, tree.curves), row, home),
+            Some(tree) => Plane::of_curves(&sweep, (plane, tree), row, home),
             None => stored_plane(py, home)?,
         };
         Ok(plane.held_by(holder))

@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use numpy::{IntoPyArray, PyArrayMethods};
 use pbif::cancellation::Cancellation;
-use pbif::continuation::curve::{Curve, CurveOrigin, codimension_two};
+use pbif::continuation::curve::{
+    Curve, CurveEnd, CurveOrigin, CurvePoint, CurveTree, LevelCurve, codimension_two,
+};
 use pbif::continuation::map::RegimeMap;
 use pbif::explore::StoredPage;
 use pbif::figure::Figures;
@@ -44,7 +46,7 @@ impl Plane {
 
     pub(crate) fn of_curves(
         sweep: &Arc<Sweep>,
-        (plane, curves): (pbif::continuation::curve::Plane, Vec<Curve>),
+        (plane, tree): (pbif::continuation::curve::Plane, CurveTree),
         row: FirstRow<'_>,
         home: Arc<Home>,
     ) -> Self {
@@ -52,7 +54,7 @@ impl Plane {
             sweep: Arc::clone(sweep),
             content: StoredPlaneContent::Curves(
                 Box::new(plane.clone()),
-                curves,
+                tree,
                 CurveOrigin::from(row),
             ),
             plane,
@@ -68,7 +70,14 @@ impl Plane {
     fn curves_of(&self) -> &[Curve] {
         match &self.content {
             StoredPlaneContent::Map(map) => &map.curves,
-            StoredPlaneContent::Curves(_, curves, _) => curves,
+            StoredPlaneContent::Curves(_, tree, _) => &tree.curves,
+        }
+    }
+
+    fn levels_of(&self) -> &[LevelCurve] {
+        match &self.content {
+            StoredPlaneContent::Map(map) => &map.levels,
+            StoredPlaneContent::Curves(_, tree, _) => &tree.levels,
         }
     }
 
@@ -77,8 +86,8 @@ impl Plane {
         let (family, title) = (self.sweep.problem.family(), settings.title.as_str());
         let figures = match &self.content {
             StoredPlaneContent::Map(map) => Figures::of_map(map, &[], title),
-            StoredPlaneContent::Curves(plane, curves, origin) => {
-                Figures::of_curves((plane, curves), (origin, &[]), family, title)
+            StoredPlaneContent::Curves(plane, tree, origin) => {
+                Figures::of_curves((plane, tree), (origin, &[]), family, title)
             }
         };
         of(&figures.with_style(&settings.figures.style))
@@ -148,7 +157,8 @@ impl Plane {
     }
 
     /// Every curve: what it is of, the indicator that is zero on it, its points (n × 2), the band's edge (n × 2), the
-    /// status of each point, its ends in words.
+    /// status of each point, its ends in words. Those of levels come last; they are of no density, and their indicator
+    /// is the number with its level.
     fn curves<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let family = self.sweep.problem.family();
         let table = |of: &mut dyn Iterator<Item = [f64; 2]>| {
@@ -156,21 +166,29 @@ impl Plane {
             let rows = numbers.len() / 2;
             numbers.into_pyarray(py).reshape([rows, 2])
         };
-        let one = |curve: &Curve| {
+        let one = |names: [String; 2], points: &[CurvePoint], ends: &[CurveEnd]| {
             let row = PyDict::new(py);
-            let points = &curve.points;
-            row.set_item("observable", curve.observable.name(family))?;
-            row.set_item("indicator", curve.kind.name())?;
+            let [observable, indicator] = names;
+            row.set_item("observable", observable)?;
+            row.set_item("indicator", indicator)?;
             row.set_item("points", table(&mut points.iter().map(|one| one.values))?)?;
             row.set_item("to_edge", table(&mut points.iter().map(|one| one.to_edge))?)?;
             let statuses = points.iter().map(|one| one.status().word());
             row.set_item("status", statuses.collect::<Vec<_>>())?;
-            let ends = curve.ends.iter();
+            let ends = ends.iter();
             let ends = ends.map(|end| (end.label.clone(), end.reason.words(&self.plane)));
             row.set_item("ends", ends.collect::<Vec<_>>())?;
             Ok(row)
         };
-        self.curves_of().iter().map(one).collect()
+        let shape = |curve: &Curve| {
+            let names = [curve.observable.name(family), curve.kind.name().to_owned()];
+            one(names, &curve.points, &curve.ends)
+        };
+        let level = |curve: &LevelCurve| {
+            one([String::new(), curve.words()], &curve.points, &curve.ends)
+        };
+        let shapes = self.curves_of().iter().map(shape);
+        shapes.chain(self.levels_of().iter().map(level)).collect()
     }
 
     /// Points of codimension two: label, kind, both values, error, status.
@@ -224,10 +242,10 @@ impl Plane {
                 StoredPlaneContent::Map(map) => {
                     StoredPage::of_map(&self.sweep, map, &cancellation, &done)
                 }
-                StoredPlaneContent::Curves(_, curves, origin) => StoredPage::of_curves(
+                StoredPlaneContent::Curves(_, tree, origin) => StoredPage::of_curves(
                     &self.sweep,
                     &self.plane,
-                    (curves, &origin.label),
+                    (tree, &origin.label),
                     &cancellation,
                     &done,
                 ),

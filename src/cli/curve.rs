@@ -15,7 +15,7 @@ use crate::continuation::{SourceError, SweepResult};
 use crate::job::{CurveJob, Done, FirstRow, Job as _, JobError, Outcome, Start, curve_rows};
 use crate::run::{CURVES, RunError};
 use crate::sweep_file::{SolveError, Sweep, SweepFile, list};
-pub(super) use words::{codimension_line, stability_lines};
+pub(super) use words::{codimension_line, level_lines, stability_lines};
 
 /// Sections of a run's sweep that may be set anew.
 const SECTIONS: [&str; 4] = ["detect", "locate", "figures", "curve"];

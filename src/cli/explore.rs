@@ -82,8 +82,8 @@ fn of_plane(stored: &StoredPlane, arguments: &ExploreArguments) -> Result<Outcom
     };
     let page = threads.install(|| match &content {
         StoredPlaneContent::Map(map) => StoredPage::of_map(&sweep, map, &cancellation, &count),
-        StoredPlaneContent::Curves(plane, curves, origin) => {
-            let curves = (curves.as_slice(), origin.label.as_str());
+        StoredPlaneContent::Curves(plane, tree, origin) => {
+            let curves = (tree, origin.label.as_str());
             StoredPage::of_curves(&sweep, plane, curves, &cancellation, &count)
         }
     });

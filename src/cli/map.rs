@@ -4,12 +4,12 @@
 use std::path::Path;
 
 use super::CommandError;
-use super::curve::{codimension_line, stability_lines};
+use super::curve::{codimension_line, level_lines, stability_lines};
 use super::jobs::{Printed, files};
 use super::sweep::shard_in_words;
 use crate::continuation::BifurcationStatus;
 use crate::continuation::curve::Curve;
-use crate::continuation::map::{MapShard, RegimeMap};
+use crate::continuation::map::{MapShard, RegimeMap, UntracedChange};
 use crate::job::{Done, Job, MapJob, MapShardJob, Outcome};
 use crate::run::format_with_error;
 
@@ -80,18 +80,26 @@ fn summary(map: &RegimeMap) -> String {
         text += &line(map, index, curve);
     }
     text += &stability_lines(&map.subject.family, &map.plane);
+    for level in map.levels.iter().enumerate() {
+        text += &level_lines(&map.plane, level, "start");
+    }
     for point in map.codimension_two() {
         text += &codimension_line(&point, &map.plane, &map.subject.family);
     }
     for one in &map.untraced {
-        let observable = map.subject.observables.get(one.observable);
+        let what = match &one.of {
+            UntracedChange::Signature(index) => {
+                let observable = map.subject.observables.get(*index);
+                observable.map(|one| one.name(family)).unwrap_or_default()
+            }
+            UntracedChange::Level(asked) => asked.measure.clone(),
+        };
         let pairs = match one.pairs {
             1 => "1 pair of neighbours".to_owned(),
             pairs => format!("{pairs} pairs of neighbours"),
         };
         text += &format!(
-            "not followed: {} changes between {pairs}, one near {} = {}, {} = {}: {}\n",
-            observable.map(|one| one.name(family)).unwrap_or_default(),
+            "not followed: {what} changes between {pairs}, one near {} = {}, {} = {}: {}\n",
             first.parameter,
             rough(map, one.near, 0),
             second.parameter,

@@ -5,18 +5,22 @@
 //! orders of magnitude. The error of the root is what one value less changes, and the number's own error over its
 //! slope.
 
-use super::Point;
 use super::doubt::{BifurcationStatus, Doubt, status_of};
 use super::measure::{
-    DECAY_DISCRIMINANT, EXPONENT, MeasureKind, SPECTRAL_CURVATURE, SPECTRAL_RISE,
+    DECAY_DISCRIMINANT, EXPONENT, Measure, MeasureKind, SPECTRAL_CURVATURE, SPECTRAL_RISE,
 };
-use crate::system::{Family, MeasureLevel};
+use super::{CellCheck, Point, SolveReport, Subject};
+use crate::system::{ExponentMethod, Family, MeasureLevel};
+use crate::topology::two_sided_limit;
 
 /// Values through which the polynomial goes, half of them on either side.
 const NODES: usize = 4;
 
 /// Share of the wanted width that interpolation may leave.
 const INTERPOLATED: f64 = 0.1;
+
+/// Degrees of freedom of standard errors of numbers that are sampled, which come from 32 blocks.
+const FREEDOM: f64 = 31.0;
 
 /// Halvings of a bracket in which a polynomial's root is found.
 const HALVINGS: usize = 80;
@@ -177,16 +181,33 @@ pub(super) fn asked_of(family: &Family) -> Vec<MeasureLevel> {
     all
 }
 
+/// Whether neighbouring values of a number differ by samples of their own; its errors are then standard errors.
+pub(super) fn is_sampled(subject: &Subject, asked: &MeasureLevel) -> bool {
+    let by_paths = subject.family.questions.largest_exponent == Some(ExponentMethod::Trajectories);
+    let is_of_cells = matches!(subject.cell_check, CellCheck::OnFinerCells { .. });
+    !is_of_cells || (by_paths && asked.measure == EXPONENT.word)
+}
+
+/// How many of the errors of a number are believed to hold the true one: one, or those of a two-sided limit where it is
+/// sampled.
+pub(super) fn limit_of(subject: &Subject, asked: &MeasureLevel, confidence: f64) -> f64 {
+    match is_sampled(subject, asked) {
+        true => two_sided_limit(1.0 - confidence, FREEDOM),
+        false => 1.0,
+    }
+}
+
 /// All crossings of the levels that are asked for, unnumbered.
 pub(super) fn crossings(
     points: &[Point],
-    asked: &[MeasureLevel],
+    (subject, confidence): (&Subject, f64),
     tolerance: f64,
 ) -> Vec<LevelCrossing> {
     let of_level = |asked: &MeasureLevel| {
         let mut found: Vec<LevelCrossing> = Vec::new();
-        for root in roots(&samples(points, asked)) {
-            let row = row(asked, &root, tolerance);
+        let limit = limit_of(subject, asked, confidence);
+        for root in roots(&samples(points, asked, limit)) {
+            let row = row((asked, is_sampled(subject, asked)), &root, tolerance);
             match found.last_mut() {
                 Some(last) if row.value - last.value <= last.error + row.error => merge(last, &row),
                 _ => found.push(row),
@@ -194,14 +215,15 @@ pub(super) fn crossings(
         }
         found
     };
-    asked.iter().flat_map(of_level).collect()
+    let all = asked_of(&subject.family);
+    all.iter().flat_map(of_level).collect()
 }
 
 /// The value to solve next, where interpolation leaves more than is wanted.
 pub(super) fn next_value(points: &[Point], asked: &[MeasureLevel], tolerance: f64) -> Option<f64> {
     let roots = asked
         .iter()
-        .flat_map(|asked| roots(&samples(points, asked)));
+        .flat_map(|asked| roots(&samples(points, asked, 1.0)));
     let mut wide =
         roots.filter(|root| root.interpolation > INTERPOLATED * tolerance.max(root.of_measure));
     wide.find_map(|root| {
@@ -212,29 +234,41 @@ pub(super) fn next_value(points: &[Point], asked: &[MeasureLevel], tolerance: f6
     })
 }
 
-/// The measure at all points that have it.
-fn samples(points: &[Point], asked: &MeasureLevel) -> Vec<Excess> {
+/// The measure at all points that have it, so many of its errors at each being believed to hold the true one.
+fn samples(points: &[Point], asked: &MeasureLevel, limit: f64) -> Vec<Excess> {
     let known = points.iter().filter_map(|point| {
-        let mut measures = point.report.measures.iter();
-        let one = measures.find(|one| one.name == asked.measure)?;
-        let is_finite = one.value.is_finite() && one.error.is_none_or(f64::is_finite);
-        is_finite.then_some((point.value, one.value, one.error))
+        let one = measure_of(&point.report, asked)?;
+        Some((point.value, one))
     });
-    let known: Vec<(f64, f64, Option<f64>)> = known.collect();
-    let is_positive = asked.level > 0.0 && known.iter().all(|(_, value, _)| *value > 0.0);
-    let sample = |(at, value, error): (f64, f64, Option<f64>)| {
-        let size = if is_positive { value } else { 1.0 };
+    let known: Vec<(f64, &Measure)> = known.collect();
+    let is_ratio = asked.level > 0.0 && known.iter().all(|(_, one)| one.value > 0.0);
+    let sample = |(at, one): (f64, &Measure)| {
+        let (over, error) = over(one, asked.level, is_ratio);
         Excess {
             at,
-            over: match is_positive {
-                true => (value / asked.level).ln(),
-                false => value - asked.level,
-            },
-            error: error.unwrap_or(0.0) / size,
-            is_judged: error.is_some(),
+            over,
+            error: limit * error,
+            is_judged: one.error.is_some(),
         }
     };
     known.into_iter().map(sample).collect()
+}
+
+/// What a report says of the measure of a level, where that is a number.
+pub(super) fn measure_of<'r>(report: &'r SolveReport, asked: &MeasureLevel) -> Option<&'r Measure> {
+    let mut measures = report.measures.iter();
+    let one = measures.find(|one| one.name == asked.measure)?;
+    let is_finite = one.value.is_finite() && one.error.is_none_or(f64::is_finite);
+    is_finite.then_some(one)
+}
+
+/// How far a measure is over its level, with the error of that: the logarithm of their ratio, or their difference.
+pub(super) fn over(one: &Measure, level: f64, is_ratio: bool) -> (f64, f64) {
+    let error = one.error.unwrap_or(0.0);
+    match is_ratio {
+        true => ((one.value / level).ln(), error / one.value),
+        false => (one.value - level, error),
+    }
 }
 
 /// All roots between neighbouring samples, ascending.
@@ -313,12 +347,13 @@ fn through(nodes: &[Excess], at: f64) -> f64 {
     nodes.iter().enumerate().map(term).sum()
 }
 
-fn row(asked: &MeasureLevel, root: &Root, tolerance: f64) -> LevelCrossing {
+fn row((asked, is_sampled): (&MeasureLevel, bool), root: &Root, tolerance: f64) -> LevelCrossing {
     let error = root.error();
     let is_judged = root.ends.iter().all(|end| end.is_judged);
     let is_known = error <= tolerance;
     let doubt = match (is_known, is_judged) {
         _ if root.is_jump => Some(Doubt::Jump),
+        (false, _) if is_sampled => Some(Doubt::FewSamples(error)),
         (false, _) => Some(Doubt::SolverError(error)),
         (true, false) => Some(Doubt::CheckMissing),
         (true, true) => None,
@@ -374,6 +409,6 @@ mod tests {
             measure: DECAY_DISCRIMINANT.word.to_owned(),
             level: 0.0,
         };
-        assert_eq!(row(&level, &jump, 0.1).doubts, [Doubt::Jump]);
+        assert_eq!(row((&level, false), &jump, 0.1).doubts, [Doubt::Jump]);
     }
 }

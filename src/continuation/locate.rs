@@ -10,7 +10,7 @@ use super::follow::{Course, Crossing};
 use super::grid::{Checked, Checks, share_of_distance};
 use super::jump::instead_of_zero;
 use super::label::{self, Label, Located, Zero};
-use super::levels::{asked_of, crossings};
+use super::levels::crossings;
 use super::measure::NUMERICAL_DIFFUSION;
 use super::root::{Root, root};
 use super::rows::{doubt_what_does_not_continue, in_order, inseparable, merge, without_flicker};
@@ -69,7 +69,8 @@ pub(super) fn label_points(
     doubt_what_does_not_continue(&mut rows, &solved, observables);
     let rows = rows.into_iter();
     let rows = rows.map(|row| Label::Bifurcation(Box::new(row)));
-    let levels = crossings(points, &asked_of(&subject.family), options.tolerance);
+    let confidence = detector.confidence();
+    let levels = crossings(points, (subject, confidence), options.tolerance);
     // Where the exponent of a fixed point passes zero is known better from itself, and asked for with it.
     let is_of_point = subject.family.questions.fixed_point.is_some();
     let levels = levels

@@ -6,10 +6,12 @@ use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
 
 use crate::continuation::Subject;
-use crate::continuation::curve::{CodimensionTwo, Curve, CurvePoint, Plane, codimension_two};
+use crate::continuation::curve::{
+    CodimensionTwo, Curve, CurvePoint, LevelCurve, Plane, codimension_two, level_name,
+};
 use crate::continuation::map::{FloodedRegion, MapNode, PlaneState, Seed, flood};
 use crate::density::Observable;
-use crate::run::{curve_name, point_labels};
+use crate::run::{curve_name, end_labels, point_labels};
 use crate::sweep_file::Sweep;
 use crate::system::Family;
 
@@ -68,9 +70,9 @@ struct Anchor {
 #[derive(Debug, Serialize)]
 struct PlaneCurve {
     name: String,
-    /// Number among the observables.
+    /// Number among the observables; none of the curve of a level.
     observable: Option<usize>,
-    method: &'static str,
+    method: String,
     /// Both parameters, the error as a share of the sides of the box, and the way to the edge of the band.
     points: Vec<[f64; 5]>,
     statuses: Vec<&'static str>,
@@ -122,7 +124,7 @@ impl PlaneScene {
         self,
         subject: &Subject,
         nodes: &[MapNode],
-        (curves, start): (&[Curve], &str),
+        (curves, levels, start): (&[Curve], &[LevelCurve], &str),
     ) -> Self {
         let lines = |observable: Observable| -> Vec<Vec<[f64; 2]>> {
             let of = curves.iter().filter(|curve| curve.observable == observable);
@@ -140,6 +142,16 @@ impl PlaneScene {
             let start = if index == 0 { start } else { "start" };
             PlaneCurve::new(subject, (index, curve), start)
         });
+        let is_first = curves.is_empty();
+        let of_levels = levels.iter().enumerate().map(|(index, curve)| {
+            let start = if is_first && index == 0 {
+                start
+            } else {
+                "start"
+            };
+            PlaneCurve::of_level((index, curve), start)
+        });
+        let told = told.chain(of_levels);
         let points = codimension_two(curves);
         let points = points
             .iter()
@@ -203,19 +215,41 @@ impl PlaneScene {
 impl PlaneCurve {
     fn new(subject: &Subject, (index, curve): (usize, &Curve), start: &str) -> Self {
         let mut observables = subject.observables.iter();
+        Self {
+            name: curve_name(index),
+            observable: observables.position(|one| *one == curve.observable),
+            method: curve.kind.name().to_owned(),
+            labels: point_labels(curve, start),
+            ..Self::through(&curve.points)
+        }
+    }
+
+    /// The curve of a level, which is of no density.
+    fn of_level((index, curve): (usize, &LevelCurve), start: &str) -> Self {
+        let begun = (curve.start, start);
+        Self {
+            name: level_name(index),
+            method: curve.words(),
+            labels: end_labels(&curve.ends, begun, curve.points.len()),
+            ..Self::through(&curve.points)
+        }
+    }
+
+    /// The points alone.
+    fn through(points: &[CurvePoint]) -> Self {
         let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
         let point = |point: &CurvePoint| {
             let ([x, y], [to_x, to_y]) = (point.values, point.to_edge.map(finite));
             [x, y, finite(point.error), to_x, to_y]
         };
-        let statuses = curve.points.iter().map(|point| point.status().word());
+        let statuses = points.iter().map(|point| point.status().word());
         Self {
-            name: curve_name(index),
-            observable: observables.position(|one| *one == curve.observable),
-            method: curve.kind.name(),
-            points: curve.points.iter().map(point).collect(),
+            name: String::new(),
+            observable: None,
+            method: String::new(),
+            points: points.iter().map(point).collect(),
             statuses: statuses.collect(),
-            labels: point_labels(curve, start),
+            labels: Vec::new(),
         }
     }
 }
@@ -259,6 +293,7 @@ pub(super) fn nodes_of(states: &[PlaneState]) -> Vec<MapNode> {
             .collect(),
         is_seen: true,
         reason: None,
+        numbers: Vec::new(),
     };
     states.iter().map(node).collect()
 }

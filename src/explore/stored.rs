@@ -6,7 +6,7 @@ use super::ExploreError;
 use super::compose::Shown;
 use super::plane::{PlaneScene, coarse_grid, nodes_of};
 use crate::cancellation::Cancellation;
-use crate::continuation::curve::{Curve, Plane};
+use crate::continuation::curve::{CurveTree, Plane};
 use crate::continuation::map::{PlaneState, RegimeMap};
 use crate::continuation::{SourceError, SweepResult, evenly_spaced};
 use crate::density::Observable;
@@ -56,7 +56,7 @@ impl StoredPage {
     ) -> Result<Self, ExploreError> {
         let subject = sweep.problem.subject();
         let plane = PlaneScene::of(&map.plane, &subject.family);
-        let plane = plane.with(subject, &map.nodes, (&map.curves, "start"));
+        let plane = plane.with(subject, &map.nodes, (&map.curves, &map.levels, "start"));
         let [first, second] = coarse_grid(&map.nodes, MOST_VALUES);
         let (solved, all) = (AtomicUsize::new(0), first.len() * second.len());
         let count = || done(solved.fetch_add(1, Ordering::Relaxed) + 1, all);
@@ -76,7 +76,7 @@ impl StoredPage {
     pub fn of_curves(
         sweep: &Sweep,
         plane: &Plane,
-        (curves, start): (&[Curve], &str),
+        (tree, start): (&CurveTree, &str),
         cancellation: &Cancellation,
         done: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<Self, ExploreError> {
@@ -91,7 +91,11 @@ impl StoredPage {
         }
         let subject = sweep.problem.subject();
         let plane = PlaneScene::of(plane, &subject.family);
-        let plane = plane.with(subject, &nodes_of(&states), (curves, start));
+        let plane = plane.with(
+            subject,
+            &nodes_of(&states),
+            (&tree.curves, &tree.levels, start),
+        );
         show(sweep, &plane, &states).fitted()
     }
 

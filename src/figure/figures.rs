@@ -10,7 +10,7 @@ use super::print::{Figure, Print};
 use super::style::FigureStyle;
 use crate::compare::Comparison;
 use crate::continuation::SweepResult;
-use crate::continuation::curve::{Curve, CurveOrigin, Plane, SweepInPlane};
+use crate::continuation::curve::{CurveOrigin, CurveTree, Plane, SweepInPlane};
 use crate::continuation::map::RegimeMap;
 use crate::system::{Family, Model, ParameterValues};
 
@@ -67,10 +67,10 @@ impl<'a> Figures<'a> {
     }
 
     /// The figure `curve` of curves in one plane, the first of which was begun at a row of a sweep over its first
-    /// parameter, and of those of a fixed point; none without a curve. What `sweeps` over one of the parameters located
+    /// parameter, and of those of levels and of a fixed point; none without a curve. What `sweeps` over one of the parameters located
     /// is marked. `family` gives names and symbols.
     pub fn of_curves(
-        (plane, curves): (&'a Plane, &'a [Curve]),
+        (plane, curves): (&'a Plane, &'a CurveTree),
         (row, sweeps): (&'a CurveOrigin, &'a [SweepInPlane]),
         family: &'a Family,
         title: &'a str,

@@ -8,14 +8,16 @@ pub use refusals::curve_rows;
 pub use row::FirstRow;
 
 use super::{Context, Job, JobError, Outcome};
+use crate::cancellation::Cancellation;
 use crate::continuation::curve::{
-    Curve, CurveError, CurveOptions, CurveOrigin, CurveStart, CurveTree, Plane, follow_all,
-    stability_curves,
+    Curve, CurveError, CurveOptions, CurveOrigin, CurveStart, CurveTree, LevelCurve, Plane,
+    follow_all, follow_level, stability_curves,
 };
 use crate::continuation::{DensitySource, SourceError, SweepResult};
 use crate::figure::{Figure, Figures};
 use crate::run::{JobFolder, JournalledSource, Layout, RunError, curve_files, format_number};
 use crate::sweep_file::{CurveSettings, Diagnostic, Report, Sweep};
+use crate::topology::Detector as _;
 use refusals::{check_corners, no_indicator, plane, refusal, refused_plane, which_parameter};
 
 /// The curves from one row of a sweep, as `[curve]` of its file asks for them.
@@ -48,10 +50,10 @@ impl<'a> CurveJob<'a> {
         let held = held.map_or(f64::NAN, |(_, value)| value);
         let start = match row {
             FirstRow::Shape(row) => CurveStart::from_row(row, held, sweep.problem.subject()),
-            FirstRow::Stability(_) => None,
+            FirstRow::Stability(_) | FirstRow::Level(_) => None,
         };
         let is_lost = start.is_none() && matches!(row, FirstRow::Shape(_));
-        if is_lost || !row.has_curve(result) {
+        if is_lost || !row.has_curve() {
             return Err(no_indicator(row, result));
         }
         let job = Self {
@@ -100,6 +102,38 @@ impl<'a> CurveJob<'a> {
         Err(refusal(CurveError::NoStart { reason }).into())
     }
 
+    /// The curves of a shape, or that of a level.
+    fn follow(
+        &self,
+        source: &dyn DensitySource,
+        cancellation: &Cancellation,
+        observer: &mut dyn FnMut([f64; 2]),
+    ) -> Result<CurveTree, CurveError> {
+        let (plane, options) = (&self.plane, self.options());
+        if let FirstRow::Level(row) = self.row {
+            let start = ([row.value, self.held], &row.asked);
+            let how = (&options, self.sweep.detector().confidence());
+            let level = follow_level(source, plane, start, how, cancellation, observer)?;
+            return Ok(CurveTree {
+                levels: vec![level],
+                ..CurveTree::default()
+            });
+        }
+        let Some(start) = &self.start else {
+            return Ok(CurveTree::default());
+        };
+        let detector = self.sweep.detector();
+        follow_all(
+            source,
+            plane,
+            &detector,
+            start,
+            &options,
+            cancellation,
+            observer,
+        )
+    }
+
     /// Refuses a box that the start is not in.
     fn check_box(&self) -> Result<(), Report> {
         let (side, value) = (&self.plane.sides()[0], self.row.value());
@@ -142,7 +176,15 @@ impl Job for CurveJob<'_> {
     }
 
     fn plan(&mut self, context: &Context<'_>) -> Result<bool, JobError> {
-        self.source = match self.sweep.source_in(&self.plane, context.cancellation) {
+        let (sweep, plane, cancellation) = (self.sweep, &self.plane, context.cancellation);
+        let source = match self.row {
+            FirstRow::Level(row) => {
+                let asked = std::slice::from_ref(&row.asked);
+                sweep.source_of_levels(plane, asked, cancellation)
+            }
+            FirstRow::Shape(_) | FirstRow::Stability(_) => sweep.source_in(plane, cancellation),
+        };
+        self.source = match source {
             Ok(source) => Some(source),
             Err(SourceError::Interrupted) => return Ok(false),
             Err(SourceError::Method(error)) => return Err(refused_plane(error.as_ref()).into()),
@@ -164,9 +206,9 @@ impl Job for CurveJob<'_> {
         if self.kept > 0 {
             context.say(&format!("going on after {} solves", self.kept));
         }
-        let Some(start) = &self.start else {
+        if matches!(self.row, FirstRow::Stability(_)) {
             return self.stability().map(Some);
-        };
+        }
         let [first, second] = self.plane.sides().each_ref().map(|side| &side.parameter);
         let mut met = 0;
         let mut observer = |values: [f64; 2]| {
@@ -176,15 +218,8 @@ impl Job for CurveJob<'_> {
                 values[0], values[1]
             ));
         };
-        let found = follow_all(
-            &JournalledSource::new(source, &journal),
-            &self.plane,
-            &self.sweep.detector(),
-            start,
-            &self.options(),
-            context.cancellation,
-            &mut observer,
-        );
+        let source = JournalledSource::new(source, &journal);
+        let found = self.follow(&source, context.cancellation, &mut observer);
         self.kept += met.max(1);
         if let Some(error) = journal.failure() {
             return Err(error.into());
@@ -202,10 +237,13 @@ impl Job for CurveJob<'_> {
 
     fn outcome(&self, found: &CurveTree) -> Outcome {
         let locate = &self.sweep.settings.locate;
-        let mut points = found.curves.iter().flat_map(|curve| &curve.points);
+        let shapes = found.curves.iter().flat_map(|curve| &curve.points);
+        let levels = found.levels.iter().flat_map(|curve| &curve.points);
+        let mut points = shapes.chain(levels);
         let is_complete =
             found.missed.is_empty() && points.all(|point| locate.is_met_by(point.status()));
-        let interrupted = found.curves.iter().any(Curve::is_interrupted);
+        let interrupted = found.curves.iter().any(Curve::is_interrupted)
+            || found.levels.iter().any(LevelCurve::is_interrupted);
         Outcome::of(interrupted, is_complete)
     }
 
@@ -223,9 +261,13 @@ impl Job for CurveJob<'_> {
     fn figures(&self, found: &CurveTree, _: &Context<'_>) -> Vec<Figure> {
         let (family, settings) = (self.sweep.problem.family(), &self.sweep.settings);
         let origin = CurveOrigin::from(self.row);
-        let curves = (&self.plane, found.curves.as_slice());
-        Figures::of_curves(curves, (&origin, &[]), family, &settings.title)
-            .with_style(&settings.figures.style)
-            .draw_all()
+        Figures::of_curves(
+            (&self.plane, found),
+            (&origin, &[]),
+            family,
+            &settings.title,
+        )
+        .with_style(&settings.figures.style)
+        .draw_all()
     }
 }

@@ -54,7 +54,7 @@ pub(crate) use generator::{
 };
 pub use measures::DerivedMeasure;
 #[cfg(feature = "store")]
-pub(crate) use measures::{columns_of_family, passage_columns};
+pub(crate) use measures::{columns_of_family, passage_columns, questions_about};
 pub(crate) use monte_carlo::MonteCarloCost;
 pub use monte_carlo::{Estimator, MonteCarloOptions, MonteCarloSource};
 pub use options::MethodOptions;

@@ -166,6 +166,13 @@ impl Problem {
         problem
     }
 
+    /// The same without derived measures.
+    #[must_use]
+    pub(crate) fn without_measures(mut self) -> Self {
+        self.subject.measures.clear();
+        self
+    }
+
     /// The bins of the family's quantities, in their order.
     pub fn bins(&self) -> &[Axis] {
         &self.bins

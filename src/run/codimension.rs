@@ -2,11 +2,12 @@
 
 use super::columns::{Columns, number, word};
 use super::curve::{self, CurveRow, curve_json, curve_name, rows};
+use super::levels_table::levels_file;
 use super::number::{format_number, format_with_error};
 use super::stability::stability_file;
 use super::{RunError, latex, plane_file};
 use crate::continuation::curve::{
-    CodimensionTwo, Curve, CurveOrigin, CurveTree, Plane, codimension_two,
+    CodimensionTwo, Curve, CurveOrigin, CurveTree, LevelCurve, Plane, codimension_two,
 };
 use crate::system::Family;
 
@@ -30,7 +31,7 @@ fn several_csv(
 pub(super) fn plane_files(
     family: &Family,
     plane: &Plane,
-    curves: &[Curve],
+    (curves, levels): (&[Curve], &[LevelCurve]),
     starts: &[&str],
 ) -> Result<Vec<(String, String)>, RunError> {
     let points = codimension_two_csv(family, plane, curves)?;
@@ -44,6 +45,7 @@ pub(super) fn plane_files(
         ("codimension_two.tex".to_owned(), rounded),
     ];
     files.extend(stability_file(family, plane)?);
+    files.extend(levels_file(plane, levels, starts)?);
     Ok(files)
 }
 
@@ -70,7 +72,7 @@ pub(crate) fn curve_files(
     (origin, sweep, of): (&CurveOrigin, &str, &str),
 ) -> Result<Vec<(String, String)>, RunError> {
     let start = origin.label.as_str();
-    let curves = tree.curves.as_slice();
+    let curves = (tree.curves.as_slice(), tree.levels.as_slice());
     let mut files = plane_files(family, plane, curves, &[start])?;
     files.extend([
         (
@@ -79,7 +81,7 @@ pub(crate) fn curve_files(
         ),
         (
             plane_file::NAME.to_owned(),
-            plane_file::of_curves(plane, curves, origin, sweep),
+            plane_file::of_curves(plane, tree, origin, sweep),
         ),
     ]);
     Ok(files)

@@ -4,7 +4,9 @@ use serde_json::json;
 
 use super::RunError;
 use super::columns::{Column, flag, number, word};
-use crate::continuation::curve::{Curve, CurvePoint, CurveTree, CurveWork, Plane};
+use crate::continuation::curve::{
+    Curve, CurveEnd, CurvePoint, CurveTree, CurveWork, LevelCurve, Plane, level_name,
+};
 use crate::system::Family;
 
 /// Folder of a run below which its curves have a folder each.
@@ -24,19 +26,30 @@ pub(super) struct CurveRow<'a> {
 
 /// The labels of the points of a curve, from end to end, most of them empty; `start` is that of its start.
 pub(crate) fn point_labels(curve: &Curve, start: &str) -> Vec<String> {
-    let label = |index: usize| {
-        let mut ends = curve.ends.iter();
-        match ends.find(|end| end.point == index) {
-            _ if index == curve.start => start.to_owned(),
+    let mut labels = end_labels(&curve.ends, (curve.start, start), curve.points.len());
+    for split in &curve.degenerate {
+        if let Some(label) = labels.get_mut(split.point).filter(|label| label.is_empty()) {
+            label.clone_from(&split.label);
+        }
+    }
+    labels
+}
+
+/// Those of the start and the ends alone, of so many points; the start goes before an end.
+pub(crate) fn end_labels(
+    ends: &[CurveEnd],
+    (start, label): (usize, &str),
+    points: usize,
+) -> Vec<String> {
+    let of_point = |index: usize| {
+        let end = ends.iter().find(|end| end.point == index);
+        match end {
+            _ if index == start => label.to_owned(),
             Some(end) => end.label.clone(),
-            None => {
-                let mut splits = curve.degenerate.iter();
-                let split = splits.find(|split| split.point == index);
-                split.map_or_else(String::new, |split| split.label.clone())
-            }
+            None => String::new(),
         }
     };
-    (0..curve.points.len()).map(label).collect()
+    (0..points).map(of_point).collect()
 }
 
 /// The rows of a curve, from end to end.
@@ -97,7 +110,8 @@ pub(super) fn curve_json(
     start: &str,
     (sweep, of): (&str, &str),
 ) -> Result<String, RunError> {
-    let interrupted = tree.curves.iter().any(Curve::is_interrupted);
+    let interrupted = tree.curves.iter().any(Curve::is_interrupted)
+        || tree.levels.iter().any(LevelCurve::is_interrupted);
     let sides = plane.sides().iter();
     let curves = tree.curves.iter().enumerate();
     let missed = tree.missed.iter().map(|missed| {
@@ -107,7 +121,7 @@ pub(super) fn curve_json(
             "reason": missed.reason,
         })
     });
-    let text = json!({
+    let mut text = json!({
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
         "ending": if interrupted { "interrupted" } else { "complete" },
@@ -122,6 +136,9 @@ pub(super) fn curve_json(
         "sweep_file": sweep,
         "made_of": of,
     });
+    if !tree.levels.is_empty() {
+        text["levels"] = levels_json(plane, &tree.levels);
+    }
     Ok(serde_json::to_string_pretty(&text)? + "\n")
 }
 
@@ -133,7 +150,7 @@ pub(super) fn one_json(family: &Family, index: usize, curve: &Curve) -> serde_js
         "method": curve.kind.name(),
         "points": curve.points.len(),
         "start": curve.start,
-        "ends": ends_json(curve),
+        "ends": ends_json(&curve.plane, &curve.ends),
         "codimension_two": curve
             .degenerate
             .iter()
@@ -142,6 +159,23 @@ pub(super) fn one_json(family: &Family, index: usize, curve: &Curve) -> serde_js
         "work": work_json(&curve.work),
         "check_work": work_json(&curve.check_work),
     })
+}
+
+/// Curves of levels without their points.
+pub(super) fn levels_json(plane: &Plane, levels: &[LevelCurve]) -> serde_json::Value {
+    let curves = levels.iter().enumerate();
+    let one = |(index, curve): (usize, &LevelCurve)| {
+        json!({
+            "name": level_name(index),
+            "measure": curve.asked.measure,
+            "level": curve.asked.level,
+            "points": curve.points.len(),
+            "start": curve.start,
+            "ends": ends_json(plane, &curve.ends),
+            "work": work_json(&curve.work),
+        })
+    };
+    curves.map(one).collect()
 }
 
 /// What solves took.
@@ -154,11 +188,11 @@ pub(super) fn work_json(work: &CurveWork) -> serde_json::Value {
 }
 
 /// The ends of a curve with their reasons.
-fn ends_json(curve: &Curve) -> Vec<serde_json::Value> {
-    let ends = curve.ends.iter().map(|end| {
+fn ends_json(plane: &Plane, ends: &[CurveEnd]) -> Vec<serde_json::Value> {
+    let ends = ends.iter().map(|end| {
         json!({
             "label": end.label,
-            "reason": end.reason.words(&curve.plane),
+            "reason": end.reason.words(plane),
             "point": end.point,
         })
     });

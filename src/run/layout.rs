@@ -5,7 +5,10 @@ use std::path::Path;
 use super::archive::Entries;
 use super::journal::differences;
 use super::place::read_text;
-use super::{RunError, checksums, curve, journal, looks, plane_file, research_object, stability};
+use super::{
+    RunError, checksums, curve, journal, levels_table, looks, plane_file, research_object,
+    stability,
+};
 
 /// What a kind of job leaves in its folder.
 #[derive(Debug, Clone, Copy)]
@@ -61,6 +64,7 @@ impl Layout {
             "codimension_two.csv",
             "codimension_two.tex",
             stability::NAME,
+            levels_table::NAME,
             "densities",
             "figures",
         ],
@@ -85,6 +89,7 @@ impl Layout {
             "codimension_two.csv",
             "codimension_two.tex",
             stability::NAME,
+            levels_table::NAME,
             "figures",
         ],
         about: &[],

@@ -5,11 +5,11 @@ use serde_json::{Value, json};
 use super::RunError;
 use super::codimension::plane_files;
 use super::columns::{Columns, count, number, word};
-use super::curve::{one_json, work_json};
+use super::curve::{levels_json, one_json, work_json};
 use super::number::format_number;
 use super::plane_file;
 use crate::continuation::Subject;
-use crate::continuation::map::{MapNode, RegimeMap};
+use crate::continuation::map::{MapNode, RegimeMap, UntracedChange};
 use crate::density::Observable;
 use crate::space::Axis;
 use crate::system::Family;
@@ -53,6 +53,20 @@ pub(super) fn columns<'a>(
     columns.push(word("reason", |node: &MapNode| {
         node.reason.clone().unwrap_or_default()
     }));
+    let mut known: Vec<&str> = Vec::new();
+    for (index, asked) in family.questions.levels.iter().enumerate() {
+        if known.contains(&asked.measure.as_str()) {
+            continue;
+        }
+        known.push(&asked.measure);
+        columns.push(number(asked.measure.clone(), move |node: &MapNode| {
+            node.numbers
+                .get(index)
+                .copied()
+                .flatten()
+                .unwrap_or(f64::NAN)
+        }));
+    }
     Columns(columns)
 }
 
@@ -111,17 +125,24 @@ fn map_json(map: &RegimeMap, sweep: &str, seconds: f64) -> Result<String, RunErr
     let curves = map.curves.iter().enumerate();
     let curves = curves.map(|(index, curve)| one_json(family, index, curve));
     let untraced = map.untraced.iter().map(|one| {
-        json!({
-            "observable": name(one.observable),
+        let mut told = json!({
             "pairs": one.pairs,
             "near": one.near,
             "reason": one.reason,
-        })
+        });
+        match &one.of {
+            UntracedChange::Signature(index) => told["observable"] = json!(name(*index)),
+            UntracedChange::Level(asked) => {
+                told["measure"] = json!(asked.measure);
+                told["level"] = json!(asked.level);
+            }
+        }
+        told
     });
     let observables = 0..map.subject.observables.len();
     let regions = observables
         .map(|index| json!({ "observable": name(index), "regions": regions_json(map, index) }));
-    let text = json!({
+    let mut text = json!({
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
         "ending": if map.interrupted { "interrupted" } else { "complete" },
@@ -139,6 +160,9 @@ fn map_json(map: &RegimeMap, sweep: &str, seconds: f64) -> Result<String, RunErr
         "seconds": seconds,
         "sweep_file": sweep,
     });
+    if !map.levels.is_empty() {
+        text["levels"] = levels_json(&map.plane, &map.levels);
+    }
     Ok(serde_json::to_string_pretty(&text)? + "\n")
 }
 
@@ -165,7 +189,7 @@ pub(crate) fn map_files(
     seconds: f64,
 ) -> Result<Vec<(String, String)>, RunError> {
     let (family, plane) = (&map.subject.family, &map.plane);
-    let mut files = plane_files(family, plane, &map.curves, &[])?;
+    let mut files = plane_files(family, plane, (&map.curves, &map.levels), &[])?;
     files.extend([
         ("map.csv".to_owned(), map_csv(map)?),
         ("map.json".to_owned(), map_json(map, sweep, seconds)?),

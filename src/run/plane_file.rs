@@ -9,10 +9,12 @@ use serde_json::{Value, json};
 
 use super::place::{FIGURES, folder_in, read_text};
 use super::{RunError, checksums};
-use crate::continuation::curve::{Curve, CurveOrigin, CurvePoint, EndReason, Plane};
-use crate::continuation::map::RegimeMap;
+use crate::continuation::curve::{
+    Curve, CurveEnd, CurveOrigin, CurvePoint, CurveTree, EndReason, LevelCurve, Plane,
+};
+use crate::continuation::map::{RegimeMap, UntracedChange};
 use crate::method::Problem;
-use read::{curve, list, map, origin};
+use read::{curve, level, list, map, origin};
 
 /// The file, in the folder of a map or of curves.
 pub(super) const NAME: &str = "plane.json";
@@ -23,12 +25,16 @@ pub(super) fn of_map(map: &RegimeMap, sweep: &str) -> String {
         json!({ "observable": one.observable, "values": one.values, "density": one.density.values })
     });
     let untraced = map.untraced.iter().map(|one| {
-        json!({
-            "observable": one.observable,
+        let mut told = json!({
             "pairs": one.pairs,
             "near": one.near,
             "reason": one.reason,
-        })
+        });
+        match &one.of {
+            UntracedChange::Signature(observable) => told["observable"] = json!(observable),
+            UntracedChange::Level(asked) => told["level"] = json!([asked.measure, asked.level]),
+        }
+        told
     });
     let map_json = json!({
         "nodes": map.nodes,
@@ -37,13 +43,18 @@ pub(super) fn of_map(map: &RegimeMap, sweep: &str) -> String {
         "not_followed": untraced.collect::<Vec<_>>(),
         "interrupted": map.interrupted,
     });
-    compose(&map.plane, &map.curves, sweep, ("map", map_json))
+    compose(
+        &map.plane,
+        (&map.curves, &map.levels),
+        sweep,
+        ("map", map_json),
+    )
 }
 
 /// The file of curves that were begun at a row.
 pub(super) fn of_curves(
     plane: &Plane,
-    curves: &[Curve],
+    tree: &CurveTree,
     origin: &CurveOrigin,
     sweep: &str,
 ) -> String {
@@ -52,10 +63,15 @@ pub(super) fn of_curves(
         "value": origin.value,
         "sides": origin.sides,
     });
-    compose(plane, curves, sweep, ("row", row))
+    compose(plane, (&tree.curves, &tree.levels), sweep, ("row", row))
 }
 
-fn compose(plane: &Plane, curves: &[Curve], sweep: &str, (key, value): (&str, Value)) -> String {
+fn compose(
+    plane: &Plane,
+    (curves, levels): (&[Curve], &[LevelCurve]),
+    sweep: &str,
+    (key, value): (&str, Value),
+) -> String {
     let sides = plane.sides().iter();
     let sides = sides.map(|side| json!([side.parameter, side.from, side.to]));
     let mut all = json!({
@@ -66,21 +82,38 @@ fn compose(plane: &Plane, curves: &[Curve], sweep: &str, (key, value): (&str, Va
         "sweep_file": sweep,
     });
     all[key] = value;
+    if !levels.is_empty() {
+        all["levels"] = levels.iter().map(level_json).collect();
+    }
     all.to_string() + "\n"
 }
 
-fn curve_json(curve: &Curve) -> Value {
-    let ends = curve.ends.iter().map(|end| {
+fn level_json(curve: &LevelCurve) -> Value {
+    json!({
+        "measure": curve.asked.measure,
+        "level": curve.asked.level,
+        "start": curve.start,
+        "ends": ends_json(&curve.ends),
+        "points": curve.points.iter().map(point_json).collect::<Vec<_>>(),
+    })
+}
+
+fn ends_json(ends: &[CurveEnd]) -> Vec<Value> {
+    let ends = ends.iter().map(|end| {
         let (word, detail) = reason_words(&end.reason);
         json!([end.label, end.point, word, detail])
     });
+    ends.collect()
+}
+
+fn curve_json(curve: &Curve) -> Value {
     let splits = curve.degenerate.iter();
     let splits = splits.map(|one| json!([one.label, one.point, one.kind.name()]));
     json!({
         "observable": curve.observable.axes(),
         "kind": curve.kind.code(),
         "start": curve.start,
-        "ends": ends.collect::<Vec<_>>(),
+        "ends": ends_json(&curve.ends),
         "degenerate": splits.collect::<Vec<_>>(),
         "points": curve.points.iter().map(point_json).collect::<Vec<_>>(),
     })
@@ -104,7 +137,7 @@ fn point_json(point: &CurvePoint) -> Value {
 }
 
 /// The words for why a curve ends, where there is nothing else to know of it.
-static REASONS: [(EndReason, &str); 12] = [
+static REASONS: [(EndReason, &str); 13] = [
     (EndReason::Closed, "closed"),
     (EndReason::Cusp, "cusp"),
     (EndReason::DegenerateSplit, "degenerate split"),
@@ -112,6 +145,7 @@ static REASONS: [(EndReason, &str); 12] = [
     (EndReason::KinkCorner, "corner at a kink"),
     (EndReason::FeatureLost, "feature lost"),
     (EndReason::SymmetryLost, "symmetry lost"),
+    (EndReason::NumberLost, "number lost"),
     (EndReason::Singular, "singular"),
     (EndReason::NotConverged, "not converged"),
     (EndReason::Sampling, "sampling"),
@@ -139,7 +173,7 @@ pub enum StoredPlaneContent {
     /// A map of regimes.
     Map(Box<RegimeMap>),
     /// Curves that were begun at a row of a sweep.
-    Curves(Box<Plane>, Vec<Curve>, CurveOrigin),
+    Curves(Box<Plane>, CurveTree, CurveOrigin),
 }
 
 /// The file of a map's folder, or of that of curves.
@@ -219,12 +253,22 @@ impl StoredPlane {
         let plane = self.plane().ok_or_else(|| broken("it has no box"))?;
         let curves = list(&self.all["curves"], |one| curve(one, &plane));
         let curves = curves.ok_or_else(|| broken("a curve cannot be understood"))?;
+        let levels = match &self.all["levels"] {
+            Value::Null => Some(Vec::new()),
+            levels => list(levels, level),
+        };
+        let levels = levels.ok_or_else(|| broken("the curve of a level cannot be understood"))?;
         if self.all["map"].is_null() {
             let origin = origin(&self.all["row"]);
             let origin = origin.ok_or_else(|| broken("its row cannot be understood"))?;
-            return Ok(StoredPlaneContent::Curves(Box::new(plane), curves, origin));
+            let tree = CurveTree {
+                curves,
+                levels,
+                missed: Vec::new(),
+            };
+            return Ok(StoredPlaneContent::Curves(Box::new(plane), tree, origin));
         }
-        let map = map(&self.all["map"], problem, plane, curves);
+        let map = map(&self.all["map"], problem, plane, (curves, levels));
         let map = map.ok_or_else(|| broken("its map cannot be understood"))?;
         Ok(StoredPlaneContent::Map(Box::new(map)))
     }

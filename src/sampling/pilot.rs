@@ -36,6 +36,12 @@ const NOISE_SHARE: f64 = 0.05;
 const DRIFT_NOISE: f64 = 0.03;
 /// Longest map step for that, as a share of the time that the noise takes to cross the spread.
 const CROSSING_SHARE: f64 = 0.25;
+/// Part of the range of an axis that is crossed.
+const PART: f64 = 0.2;
+/// How much slower than a drift that holds a state changes the noise takes to cross its spread, as a share: a half of
+/// the rate of an Ornstein-Uhlenbeck process, and less where the spread is guessed from the range.
+const SLOWER: f64 = 0.25;
+const SLOWER_THAN_SPREAD: f64 = 0.5;
 /// Most steps in one automatic map step.
 const MOST_MAP_STEPS: f64 = 1e5;
 
@@ -56,7 +62,9 @@ pub struct Pilot {
     pub mean_square_width: Vec<f64>,
     /// Mean noise intensity Σ b²/2, one value an axis.
     pub noise_intensity: Vec<f64>,
-    /// Fastest rate ω: 99 % of the visited states have no eigenvalue of the drift's Jacobian of larger magnitude.
+    /// Fastest rate ω: 99 % of the visited states have no eigenvalue of the drift's Jacobian of larger magnitude. At
+    /// least half of the rate at which noise crosses the spread along an axis, which matters for drifts that do not
+    /// change.
     pub frequency: f64,
     /// Mean damping γ of the oscillation's energy (-2 Re λ of oscillating pairs λ; for x'' + κx' + ω²x = 0 it is
     /// κ); zero where nothing oscillates. Negative values mean that energy is fed in. Damping of other
@@ -174,8 +182,10 @@ pub fn pilot(
     let scouted: Vec<LocalRates> = scouts
         .filter_map(|state| local_rates(system, space, &state))
         .collect();
+    let crossing = rate_across(system, space, seed);
     let (fastest, damping) = summary(&scouted, 1.0);
     let (typical, _) = summary(&scouted, 0.5);
+    let [fastest, typical] = [fastest, typical].map(|rate| rate.max(crossing));
     let step = time_step(
         fastest,
         typical,
@@ -204,6 +214,27 @@ pub fn pilot(
         return Ok(Pilot { outside, ..seen });
     }
     Ok(record.finish(2 * steps))
+}
+
+/// The rate at which noise, or the drift, takes a state across a fair part of the range of an axis, the largest of all.
+/// It is slower than a drift that holds the state in Ω changes along the axis, and matters where the drift does not
+/// change at all, as that of dry friction alone.
+fn rate_across(system: &dyn System, space: &CellSpace, seed: u64) -> f64 {
+    let mut largest: f64 = 0.0;
+    for scout in 0..SCOUTS {
+        let state = place(space, seed, scout, true);
+        let drift = system.drift_at(0.0, &state);
+        let mut intensity = vec![0.0; space.dimension()];
+        for noise in system.noises() {
+            intensity[noise.axis] += 0.5 * noise.at(0.0, &state).powi(2);
+        }
+        for ((axis, drift), noise) in space.axes().iter().zip(drift).zip(intensity) {
+            let part = PART * (axis.to() - axis.from());
+            let rate = SLOWER * (noise / (part * part)).max(PART * drift.abs() / part);
+            largest = largest.max(if rate.is_finite() { rate } else { 0.0 });
+        }
+    }
+    largest
 }
 
 /// What is left to say where no trajectory stays in Ω: means over Ω itself.

@@ -6,9 +6,12 @@ use super::draft::MethodKind;
 use super::settings::Settings;
 use crate::cancellation::Cancellation;
 use crate::continuation::curve::{CurveOptions, Plane};
-use crate::continuation::map::{MapMaker, MapObserver, PlaneState, RegimeMap, plane_states};
+use crate::continuation::map::{
+    MapLevels, MapMaker, MapObserver, PlaneState, RegimeMap, plane_states,
+};
 use crate::continuation::{DensitySource, Observer, SourceError, SweepError, SweepResult, sweep};
-use crate::method::{MethodError, MethodSource, Problem};
+use crate::method::{MethodError, MethodSource, Problem, questions_about};
+use crate::system::MeasureLevel;
 use crate::topology::PersistenceDetector;
 
 /// Everything a sweep needs.
@@ -178,6 +181,33 @@ impl Sweep {
         plane: &Plane,
         cancellation: &Cancellation,
     ) -> Result<Box<dyn DensitySource>, SourceError> {
+        let problem = self.problem_in(plane)?.without_measures();
+        Ok(self.source_of(&problem, cancellation)?.0)
+    }
+
+    /// The same of a source that works out the measures of some levels too, and no others that take solves of their own.
+    ///
+    /// # Errors
+    /// As [`Sweep::source_in`].
+    pub fn source_of_levels(
+        &self,
+        plane: &Plane,
+        asked: &[MeasureLevel],
+        cancellation: &Cancellation,
+    ) -> Result<Box<dyn DensitySource>, SourceError> {
+        let problem = self.problem_in(plane)?;
+        let (mut family, space) = (problem.family().clone(), problem.space().clone());
+        family.questions = questions_about(&family, asked);
+        let (observables, bins) = (problem.observables().to_vec(), problem.bins().to_vec());
+        let problem = Problem::watching(family, space, observables, bins)?;
+        let measures = self.settings.measures.as_deref().unwrap_or_default();
+        Ok(self
+            .source_of(&problem.measuring(measures), cancellation)?
+            .0)
+    }
+
+    /// What the sweep is of, in a plane of two parameters.
+    fn problem_in(&self, plane: &Plane) -> Result<Problem, SourceError> {
         let (family, path) = (self.problem.family(), plane.path());
         let is_held = |(name, _): &(&str, f64)| path.moved().iter().all(|moved| moved != name);
         let swept = family.values_at(family.ends().0);
@@ -190,8 +220,8 @@ impl Sweep {
             .map_err(MethodError::from)?;
         let problem = &self.problem;
         let (space, observables) = (problem.space().clone(), problem.observables().to_vec());
-        let problem = Problem::watching(in_plane, space, observables, problem.bins().to_vec())?;
-        Ok(self.source_of(&problem, cancellation)?.0)
+        let bins = problem.bins().to_vec();
+        Ok(Problem::watching(in_plane, space, observables, bins)?)
     }
 
     /// Solves along the parameter and locates the changes; `observer` sees every point as it is done, `()` looks away.
@@ -252,8 +282,16 @@ impl Sweep {
             settings.points,
             self.curve_options(plane.sides()[0].length()),
         );
+        let of_levels = |plane: &Plane, asked: &[MeasureLevel]| {
+            Ok(wrap(self.source_of_levels(plane, asked, cancellation)?))
+        };
+        let asked = self.problem.family().questions.levels.as_slice();
         task(&MapMaker {
             source: &|plane: &Plane| Ok(wrap(self.source_in(plane, cancellation)?)),
+            levels: (!asked.is_empty()).then_some(MapLevels {
+                asked,
+                source: &of_levels,
+            }),
             plane: &plane,
             detector: &self.detector(),
             options: &options,

@@ -9,6 +9,7 @@ mod codimension_two;
 mod codimension_two_kinks;
 mod curve_files;
 mod curves;
+mod levels;
 mod map_files;
 mod maps;
 mod support;

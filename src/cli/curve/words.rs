@@ -2,7 +2,8 @@
 
 use crate::continuation::BifurcationStatus;
 use crate::continuation::curve::{
-    CodimensionTwo, CodimensionTwoKind, Curve, CurveTree, Plane, codimension_two, stability_curves,
+    CodimensionTwo, CodimensionTwoKind, Curve, CurveTree, LevelCurve, Plane, codimension_two,
+    level_name, stability_curves,
 };
 use crate::job::{CurveJob, Job as _};
 use crate::run::{doubt_in_words, format_with_error};
@@ -13,6 +14,9 @@ pub(super) fn summary(job: &CurveJob<'_>, tree: &CurveTree) -> String {
     let (mut text, plane) = (String::new(), job.plane());
     for (index, curve) in tree.curves.iter().enumerate() {
         text += &of_curve(job, tree, (index, curve));
+    }
+    for (index, curve) in tree.levels.iter().enumerate() {
+        text += &level_lines(plane, (index, curve), job.row().label());
     }
     text += &stability_lines(job.sweep().problem.family(), plane);
     for point in codimension_two(&tree.curves) {
@@ -45,6 +49,41 @@ pub(in crate::cli) fn stability_lines(family: &Family, plane: &Plane) -> String 
         )
     });
     lines.collect()
+}
+
+/// The curve of a level with its start, of this label, and its ends.
+pub(in crate::cli) fn level_lines(
+    plane: &Plane,
+    (index, curve): (usize, &LevelCurve),
+    start: &str,
+) -> String {
+    let [first, second] = plane.sides();
+    let mut text = format!(
+        "{}  {} in the plane of {} and {}\n",
+        level_name(index),
+        curve.words(),
+        first.parameter,
+        second.parameter
+    );
+    let ends = curve.ends.iter();
+    let ends = ends.map(|end| (end.point, end.label.as_str(), end.reason.words(plane)));
+    let mut marks: Vec<(usize, &str, String)> = ends.collect();
+    marks.push((curve.start, start, "start".to_owned()));
+    marks.sort_by_key(|mark| mark.0);
+    for (index, label, words) in marks {
+        if let Some(point) = curve.points.get(index) {
+            let values = place(plane, point.values, point.error);
+            text += &format!("  {label:<5} {values}  {words}\n");
+        }
+    }
+    let located = curve.points.iter();
+    let located = located.filter(|point| is_located(point.status())).count();
+    let largest = (curve.points.iter()).fold(0.0, |most: f64, point| most.max(point.error));
+    text += &format!(
+        "  {} points, {located} of them located; largest error {largest:.1e} of the sides of the box\n",
+        curve.points.len()
+    );
+    text
 }
 
 /// A curve with its ends.

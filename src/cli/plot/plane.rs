@@ -39,14 +39,14 @@ pub(super) fn run(
     let content = stored.content(&spec.problem)?;
     let (plane, curves) = match &content {
         StoredPlaneContent::Map(map) => (&map.plane, map.curves.as_slice()),
-        StoredPlaneContent::Curves(plane, curves, _) => (&**plane, curves.as_slice()),
+        StoredPlaneContent::Curves(plane, tree, _) => (&**plane, tree.curves.as_slice()),
     };
     let crossed = crossed(&arguments.with, plane, family)?;
     let sweeps: Vec<SweepInPlane> = crossed.iter().map(|one| one.sweep.clone()).collect();
     let figures = match &content {
         StoredPlaneContent::Map(map) => Figures::of_map(map, &sweeps, title),
-        StoredPlaneContent::Curves(plane, curves, origin) => {
-            Figures::of_curves((plane, curves), (origin, &sweeps), family, title)
+        StoredPlaneContent::Curves(plane, tree, origin) => {
+            Figures::of_curves((plane, tree), (origin, &sweeps), family, title)
         }
     };
     let figures = figures.with_style(style);

@@ -58,6 +58,8 @@ pub enum EndReason {
     FeatureLost,
     /// The density has no centre of symmetry beyond, at which the indicator would be.
     SymmetryLost,
+    /// The number whose level was followed is unknown beyond.
+    NumberLost,
     /// Two folds meet in a cusp: the last point, found from how both parameters depend on the place of the fold.
     Cusp,
     /// Two folds meet in a centre of symmetry, at which births away from it turn into births at it: the last point,
@@ -87,7 +89,7 @@ impl EndReason {
         match self {
             Self::Border(_) => "EP",
             Self::Closed => "CL",
-            Self::NoDensity(_) | Self::NotConverged | Self::Sampling => "MX",
+            Self::NoDensity(_) | Self::NumberLost | Self::NotConverged | Self::Sampling => "MX",
             Self::Cusp => "CP",
             Self::DegenerateSplit => "DS",
             Self::DegenerateKink => "DK",
@@ -117,6 +119,7 @@ impl EndReason {
                 "the symmetry is lost: beyond, the density has no centre".to_owned()
             }
             Self::FeatureLost => "the feature is lost".to_owned(),
+            Self::NumberLost => "the number has no value beyond".to_owned(),
             Self::Singular => "the indicator changes in no direction".to_owned(),
             Self::NotConverged => "the curve was not met again".to_owned(),
             Self::Sampling => "too few samples to tell where the curve goes on".to_owned(),
@@ -183,7 +186,7 @@ pub struct CurveOrigin {
     pub label: String,
     /// Value of the swept parameter.
     pub value: f64,
-    /// Signatures below and above it; `None` for a D-bifurcation.
+    /// Signatures below and above it; `None` for a D-bifurcation and for the crossing of a level.
     pub sides: Option<[Signature; 2]>,
 }
 

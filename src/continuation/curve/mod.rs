@@ -26,6 +26,7 @@ mod cusp;
 mod degenerate;
 mod fold_end;
 mod found;
+mod level;
 mod piece;
 mod plane;
 mod polynomial;
@@ -44,6 +45,8 @@ pub use found::{
     CodimensionTwoKind, Curve, CurveEnd, CurveOrigin, CurvePoint, CurveWork, DegeneratePoint,
     EndReason,
 };
+pub(crate) use level::level_name;
+pub use level::{LevelCurve, follow_level};
 pub use plane::{Plane, PlaneSide};
 pub use stability::{StabilityCurve, StabilityKind, StabilityPoint, stability_curves};
 pub use tree::{CurveTree, MissedBranch, follow_all};

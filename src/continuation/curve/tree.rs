@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use super::agree::agree;
 use super::walked::apart;
-use super::{Curve, CurveError, CurveOptions, CurveStart, Plane, follow};
+use super::{Curve, CurveError, CurveOptions, CurveStart, LevelCurve, Plane, follow};
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, SourceError};
 use crate::topology::Detector;
@@ -27,8 +27,10 @@ pub struct MissedBranch {
 /// Curves that hang together.
 #[derive(Debug, Clone, Default)]
 pub struct CurveTree {
-    /// The curves, first the one that was asked for; each once. None where a D-bifurcation was.
+    /// The curves, first the one that was asked for; each once. None where something else than a P-bifurcation was.
     pub curves: Vec<Curve>,
+    /// The curve of a level, where that was asked for.
+    pub levels: Vec<LevelCurve>,
     /// Those that were not met.
     pub missed: Vec<MissedBranch>,
 }
@@ -94,7 +96,11 @@ pub fn follow_all(
         }
     }
     agree(&mut curves);
-    Ok(CurveTree { curves, missed })
+    Ok(CurveTree {
+        curves,
+        levels: Vec::new(),
+        missed,
+    })
 }
 
 impl CurveStart {

@@ -8,28 +8,28 @@ use crate::continuation::SourceError;
 use crate::density::hellinger;
 
 /// A place nearer to the curve than this is on it: its foot is the point.
-const CLOSE: f64 = 1e-4;
+pub(super) const CLOSE: f64 = 1e-4;
 /// Of a sampled density a place is on the curve when it is nearer than this share of the sampling error there.
-const WITHIN_NOISE: f64 = 0.5;
+pub(super) const WITHIN_NOISE: f64 = 0.5;
 /// Corrections of one point.
-const MOST_CORRECTIONS: usize = 6;
+pub(super) const MOST_CORRECTIONS: usize = 6;
 /// A correction that leaves more than this share of the distance does not converge.
 const CONVERGING: f64 = 0.5;
 /// Shortest step, over the longest.
-const SHORTEST: f64 = 1.0 / 256.0;
+pub(super) const SHORTEST: f64 = 1.0 / 256.0;
 /// Cosine of the angle between neighbouring tangents below which a step is halved, and above which steps grow.
-const SHARP: f64 = 0.906;
-const GENTLE: f64 = 0.99;
-const GROWTH: f64 = 1.6;
+pub(super) const SHARP: f64 = 0.906;
+pub(super) const GENTLE: f64 = 0.99;
+pub(super) const GROWTH: f64 = 1.6;
 /// Farthest that the curve may be from where it is said to begin.
-const FAR: f64 = 0.05;
+pub(super) const FAR: f64 = 0.05;
 /// Places of an indicator at neighbouring points farther apart than this, in ranges of the axes, are not one place that
 /// moved.
 const ONE_PLACE: f64 = 0.1;
 /// How many times as fast as along a curve its indicator's gradient may change across it.
-const ACROSS: f64 = 2.0;
+pub(super) const ACROSS: f64 = 2.0;
 /// Fewest points of a closed curve.
-const FEWEST_CLOSED: usize = 6;
+pub(super) const FEWEST_CLOSED: usize = 6;
 
 impl Task<'_> {
     /// Both directions from the start.
@@ -113,7 +113,7 @@ impl Task<'_> {
             if nodes.len() >= self.options.most_points {
                 return (nodes, EndReason::TooManyPoints);
             }
-            let Some((at, border)) = predict(here, bend, step) else {
+            let Some((at, border)) = predict((here.foot, here.tangent), bend, step) else {
                 let side = nearest_side(here.foot);
                 return (nodes, EndReason::Border(side));
             };
@@ -275,10 +275,12 @@ fn remainder(reading: &Reading, size: f64, before: Option<&WalkPoint>) -> f64 {
 
 /// Where the next point is expected, and the side of the box at whose end it lies, if the step leads out; `None` where
 /// nothing of the box is left in this direction.
-fn predict(here: &WalkPoint, bend: [f64; 2], step: f64) -> Option<([f64; 2], Option<usize>)> {
-    let at = |step: f64| {
-        [0, 1].map(|k| here.foot[k] + step * here.tangent[k] + 0.5 * step * step * bend[k])
-    };
+pub(super) fn predict(
+    (foot, tangent): ([f64; 2], [f64; 2]),
+    bend: [f64; 2],
+    step: f64,
+) -> Option<([f64; 2], Option<usize>)> {
+    let at = |step: f64| [0, 1].map(|k| foot[k] + step * tangent[k] + 0.5 * step * step * bend[k]);
     if within(at(step)) {
         return Some((at(step), None));
     }
@@ -302,13 +304,13 @@ fn predict(here: &WalkPoint, bend: [f64; 2], step: f64) -> Option<([f64; 2], Opt
 }
 
 /// The side of the box to whose ends a place is nearest.
-fn nearest_side(place: [f64; 2]) -> usize {
+pub(super) fn nearest_side(place: [f64; 2]) -> usize {
     let gap = |k: usize| place[k].min(1.0 - place[k]);
     usize::from(gap(1) < gap(0))
 }
 
 /// Whether the line between two points passes by a third.
-fn passes(from: [f64; 2], to: [f64; 2], by: [f64; 2]) -> bool {
+pub(super) fn passes(from: [f64; 2], to: [f64; 2], by: [f64; 2]) -> bool {
     let onward = [to[0] - from[0], to[1] - from[1]];
     let gap = [by[0] - from[0], by[1] - from[1]];
     let length = dot(onward, onward);
@@ -317,6 +319,6 @@ fn passes(from: [f64; 2], to: [f64; 2], by: [f64; 2]) -> bool {
     (0.0..=1.0).contains(&share) && across.abs() < 0.25
 }
 
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }

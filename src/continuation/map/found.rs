@@ -1,8 +1,11 @@
 //! What a map gives: nodes with their signatures, the curves between them, and what no curve explains.
 
-use crate::continuation::curve::{CodimensionTwo, Curve, CurveWork, Plane, codimension_two};
+use crate::continuation::curve::{
+    CodimensionTwo, Curve, CurveWork, LevelCurve, Plane, codimension_two,
+};
 use crate::continuation::{PointStatus, Subject};
 use crate::density::Density;
+use crate::system::MeasureLevel;
 use crate::topology::Signature;
 
 /// A solved place of a map.
@@ -21,13 +24,28 @@ pub struct MapNode {
     pub is_seen: bool,
     /// Why there is no density, where a sentence is known.
     pub reason: Option<String>,
+    /// The numbers whose levels are asked for, in the order of these, as far as they are known.
+    #[cfg_attr(
+        feature = "serde",
+        serde(default, skip_serializing_if = "Vec::is_empty")
+    )]
+    pub numbers: Vec<Option<f64>>,
 }
 
-/// Places where a signature changes and no curve was followed.
+/// What changes between neighbouring nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub enum UntracedChange {
+    /// The signature of an observable, by its place in [`Subject::observables`].
+    Signature(usize),
+    /// A number passes its level.
+    Level(MeasureLevel),
+}
+
+/// Places where something changes and no curve was followed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Untraced {
-    /// The observable, by its place in [`Subject::observables`].
-    pub observable: usize,
+    /// What changes.
+    pub of: UntracedChange,
     /// How many pairs of neighbouring nodes show it.
     pub pairs: usize,
     /// Values of both parameters between one of these pairs.
@@ -69,6 +87,8 @@ pub struct RegimeMap {
     pub cells: Vec<[[f64; 2]; 2]>,
     /// The curves, in the order in which they were followed.
     pub curves: Vec<Curve>,
+    /// The curves of the levels that the family asks for, one after the other as the levels are.
+    pub levels: Vec<LevelCurve>,
     /// Changes that no curve explains.
     pub untraced: Vec<Untraced>,
     /// A density of each signature, in its largest region; none of a map that was interrupted.

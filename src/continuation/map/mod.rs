@@ -21,6 +21,7 @@ mod crossing;
 mod curve_line;
 mod found;
 mod lattice;
+mod level_curves;
 mod node;
 mod regions;
 mod samples;
@@ -30,15 +31,16 @@ mod starts;
 mod states;
 mod trace;
 
-pub use found::{MapNode, MapWork, RegimeMap, RegionSample, Untraced};
+pub use found::{MapNode, MapWork, RegimeMap, RegionSample, Untraced, UntracedChange};
 pub(crate) use regions::{FloodedRegion, Seed, flood};
 pub use regions::{Region, RegionPicture};
 pub use shards::{MapChange, MapShard};
 pub(crate) use states::{PlaneState, plane_states};
 
-use super::curve::{Curve, CurveOptions, Plane, agree};
+use super::curve::{Curve, CurveOptions, LevelCurve, Plane, agree};
 use super::{DensitySource, Shard, SourceError};
 use crate::cancellation::Cancellation;
+use crate::system::MeasureLevel;
 use crate::topology::Detector;
 use lattice::Lattice;
 use solve::Solver;
@@ -69,6 +71,19 @@ impl Default for MapOptions {
 /// a path of its own.
 pub type SourceInPlane<'a> =
     dyn Fn(&Plane) -> Result<Box<dyn DensitySource>, SourceError> + Sync + 'a;
+
+/// Levels of numbers whose curves a map shows.
+#[derive(Clone, Copy)]
+pub struct MapLevels<'a> {
+    /// The numbers and their levels.
+    pub asked: &'a [MeasureLevel],
+    /// Makes a source as that of the map, of which these numbers are wanted too.
+    pub source: &'a LevelSource<'a>,
+}
+
+/// Makes a source of densities and of the numbers of some levels along the path of a plane.
+pub type LevelSource<'a> =
+    dyn Fn(&Plane, &[MeasureLevel]) -> Result<Box<dyn DensitySource>, SourceError> + Sync + 'a;
 
 /// What a map tells while it is made.
 #[derive(Debug, Clone, Copy)]
@@ -131,6 +146,7 @@ pub fn regime_map(
 ) -> Result<RegimeMap, SourceError> {
     let maker = MapMaker {
         source,
+        levels: None,
         plane,
         detector,
         options,
@@ -145,6 +161,8 @@ pub fn regime_map(
 pub struct MapMaker<'a> {
     /// Makes sources of densities in the plane.
     pub source: &'a SourceInPlane<'a>,
+    /// Levels of which curves are wanted besides.
+    pub levels: Option<MapLevels<'a>>,
     /// The box.
     pub plane: &'a Plane,
     /// Finds features and indicators.
@@ -158,6 +176,18 @@ pub struct MapMaker<'a> {
 }
 
 impl MapMaker<'_> {
+    /// A source of the densities, and of the numbers of some levels.
+    fn source_of(
+        &self,
+        plane: &Plane,
+        asked: &[MeasureLevel],
+    ) -> Result<Box<dyn DensitySource>, SourceError> {
+        match self.levels.filter(|_| !asked.is_empty()) {
+            Some(levels) => (levels.source)(plane, asked),
+            None => (self.source)(plane),
+        }
+    }
+
     /// The map in one piece; see [`regime_map`].
     ///
     /// # Errors
@@ -230,18 +260,23 @@ impl MapMaker<'_> {
             nodes: solver.work(),
             ..MapWork::default()
         };
-        let (mut curves, untraced) = match &self.options.curves {
-            Some(options) => {
-                let tracer = trace::Tracer {
-                    maker: self,
-                    options,
-                };
-                tracer.trace(crossings, blurred, &mut work.curves)
-            }
-            None => (Vec::new(), Vec::new()),
-        };
+        let (mut curves, mut untraced) = (Vec::new(), Vec::new());
+        let mut levels = Vec::new();
+        if let Some(options) = &self.options.curves {
+            let tracer = trace::Tracer {
+                maker: self,
+                options,
+            };
+            (curves, untraced) = tracer.trace(crossings, blurred, &mut work.curves);
+            let solved = solver.grid();
+            let all = (lattice, leaves.as_slice(), &*solved);
+            let (found, missed) = level_curves::level_curves(self, options, all, &mut work.curves);
+            levels = found;
+            untraced.extend(missed);
+        }
         agree(&mut curves);
-        let is_cut = curves.iter().any(Curve::is_interrupted);
+        let is_cut = curves.iter().any(Curve::is_interrupted)
+            || levels.iter().any(LevelCurve::is_interrupted);
         let corners = leaves.into_iter().map(|leaf| lattice.corners(leaf));
         let mut map = RegimeMap {
             interrupted: self.cancellation.is_cancelled() || is_cut,
@@ -249,6 +284,7 @@ impl MapMaker<'_> {
             nodes: solver.into_nodes(),
             cells: corners.collect(),
             curves,
+            levels,
             untraced,
             samples: Vec::new(),
             work,

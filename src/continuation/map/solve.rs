@@ -12,6 +12,7 @@ use super::lattice::{At, Lattice, Leaf};
 use super::node::{SolvedNode, SolvedNodes};
 use super::{MapMaker, MapProgress};
 use crate::continuation::curve::CurveWork;
+use crate::continuation::levels::measure_of;
 use crate::continuation::{Finding, Point, Session, SourceError};
 
 /// Coarse rows of a strip: its first node is solved without a neighbour, and all strips can be solved side by side.
@@ -169,7 +170,8 @@ impl<'a> Solver<'a> {
 
     fn solve_part(&self, part: &[At]) -> Result<(), SourceError> {
         let plane = self.maker.plane.afresh();
-        let source = (self.maker.source)(&plane)?;
+        let asked = self.maker.levels.map_or(&[][..], |levels| levels.asked);
+        let source = self.maker.source_of(&plane, asked)?;
         let mut session = source.open(self.maker.cancellation);
         let mut behind = Vec::new();
         for (index, &at) in part.iter().enumerate() {
@@ -225,6 +227,10 @@ impl<'a> Solver<'a> {
             signatures: detections.iter().map(|one| one.signature).collect(),
             is_seen: detections.iter().all(|one| one.is_seen),
             reason: refusal.map(|error| error.to_string()).or(at_rest),
+            numbers: (self.maker.levels.iter())
+                .flat_map(|levels| levels.asked)
+                .map(|asked| Some(measure_of(&point.report, asked)?.value))
+                .collect(),
         };
         Some(SolvedNode {
             point: Some(point),

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::crossing::{Blurred, Crossing};
 use super::curve_line::{CurveLine, IDENTICAL};
-use super::found::Untraced;
+use super::found::{Untraced, UntracedChange};
 use super::starts::{is_alike, starts};
 use super::{MapMaker, MapProgress};
 use crate::continuation::SourceError;
@@ -185,7 +185,7 @@ impl Tracer<'_> {
     /// A change whose curve says too little.
     fn vague(&self, start: &Crossing, reason: &str) -> Untraced {
         Untraced {
-            observable: start.observable,
+            of: UntracedChange::Signature(start.observable),
             pairs: 1,
             near: self.maker.plane.values(start.at),
             reason: reason.to_owned(),
@@ -222,15 +222,16 @@ impl Tracer<'_> {
         pairs.retain(|(observable, ends, _)| is_open(ends, *observable));
         let mut found: Vec<Untraced> = Vec::new();
         for (observable, [a, b], reason) in pairs {
+            let of = UntracedChange::Signature(observable);
             let known = found
                 .iter_mut()
-                .find(|one| one.observable == observable && one.reason == reason);
+                .find(|one| one.of == of && one.reason == reason);
             if let Some(known) = known {
                 known.pairs += 1;
                 continue;
             }
             found.push(Untraced {
-                observable,
+                of,
                 pairs: 1,
                 near: self.maker.plane.values([0, 1].map(|k| 0.5 * (a[k] + b[k]))),
                 reason: reason.to_owned(),

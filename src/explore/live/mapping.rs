@@ -82,7 +82,11 @@ impl Live {
                 Err(error) => return Err(Stop::Refused(error.to_string())),
             };
             let plane = PlaneScene::of(&map.plane, &map.subject.family);
-            let plane = plane.with(&map.subject, &map.nodes, (&map.curves, "start"));
+            let plane = plane.with(
+                &map.subject,
+                &map.nodes,
+                (&map.curves, &map.levels, "start"),
+            );
             Ok::<Option<PlaneFound>, Stop>(plane.found)
         })
     }

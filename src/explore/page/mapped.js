@@ -40,7 +40,8 @@ class MapPage extends Page {
   /** Where the curves of the plane cross a row, by straight lines between their points: labels as a sweep's located changes have them. */
   crossings(second) {
     const [{ from, to }] = this.scene.plane.sides;
-    const labels = this.scene.plane.found.curves.flatMap((curve) => curve.points.slice(1).flatMap((b, i) => {
+    const shapes = this.scene.plane.found.curves.filter((curve) => curve.observable !== null);
+    const labels = shapes.flatMap((curve) => curve.points.slice(1).flatMap((b, i) => {
       const a = curve.points[i];
       if ((a[1] - second) * (b[1] - second) > 0 || a[1] === b[1]) return [];
       const share = (second - a[1]) / (b[1] - a[1]);

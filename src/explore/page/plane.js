@@ -21,8 +21,8 @@ const kindWords = (words) => words || "no steady state";
 const methodsOf = (found) => [...new Set(found.curves.map(({ method }) => method))];
 const lineOf = (found, curve, theme) => [theme.ink, theme.cursor, theme.line, theme.pinned][methodsOf(found).indexOf(curve.method) % 4];
 
-/** The curves of one watched density. */
-const curvesOf = (found, k) => found.curves.filter((curve) => curve.observable === k);
+/** The curves of one watched density, and those of levels, which are of none. */
+const curvesOf = (found, k) => found.curves.filter((curve) => curve.observable === k || curve.observable === null);
 
 /** Rows of a legend: each a list of entries with their places. */
 const legendRows = (entries, width, size) => {

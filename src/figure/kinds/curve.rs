@@ -6,7 +6,8 @@ use plotters_backend::text_anchor::HPos;
 use super::Sketch;
 use crate::continuation::BifurcationStatus;
 use crate::continuation::curve::{
-    Curve, CurveOrigin, CurvePoint, EndReason, Plane, SweepInPlane, codimension_two,
+    Curve, CurveOrigin, CurvePoint, CurveTree, EndReason, LevelCurve, Plane, SweepInPlane,
+    codimension_two,
 };
 use crate::density::Observable;
 use crate::figure::canvas::frame::{self, Scale};
@@ -17,6 +18,8 @@ use crate::figure::canvas::style::{
 };
 use crate::figure::canvas::symbols;
 use crate::figure::parts::crossed::Crossed;
+use crate::figure::parts::curve_line::{BAND, DASHES, draw_points, into_box};
+use crate::figure::parts::level_lines::LevelLines;
 use crate::figure::parts::names;
 use crate::figure::parts::names::symbol_of;
 use crate::figure::parts::stability::Stability;
@@ -29,25 +32,24 @@ const PANEL: (f64, f64) = (390.0, 300.0);
 const USUAL: f64 = 480.0;
 /// Room right of the panel, for half a label.
 const BESIDE: f64 = 14.0;
-/// Opacity of the band.
-const BAND: f64 = 0.25;
 /// A band narrower than this, in pixels, is not seen beside the line.
 const SEEN: f64 = 2.0;
 /// Radius of the dots at the ends and at the start, in pixels.
 const DOT: f64 = 3.4;
-/// Where the line is not located.
-const DASHES: &[f64] = &[5.0, 4.0];
 /// Distance of letters from what they name, in pixels.
 const AWAY: f64 = 9.0;
+/// Room that a label takes beside its point, in pixels.
+const ROOM: f64 = 45.0;
 
 /// The figure of curves in one plane; none without a curve.
 pub(in crate::figure) fn sketches<'a>(
-    (plane, curves): (&'a Plane, &'a [Curve]),
+    (plane, tree): (&'a Plane, &'a CurveTree),
     (row, sweeps): (&'a CurveOrigin, &'a [SweepInPlane]),
     family: &'a Family,
 ) -> Vec<Sketch<'a>> {
     let stability = Stability::new(family, plane, true);
-    if curves.is_empty() && stability.is_empty() {
+    let (curves, levels) = (tree.curves.as_slice(), tree.levels.as_slice());
+    if curves.is_empty() && levels.is_empty() && stability.is_empty() {
         return Vec::new();
     }
     let draw = move |print: &Print<'_>| {
@@ -62,6 +64,10 @@ pub(in crate::figure) fn sketches<'a>(
             plane,
             curves,
             stability: &stability,
+            levels: LevelLines {
+                plane,
+                curves: levels,
+            },
             row,
             crossed,
             family,
@@ -74,9 +80,10 @@ pub(in crate::figure) fn sketches<'a>(
 
 struct Scene<'a> {
     plane: &'a Plane,
-    /// The first is the one that was begun at the row, unless that is a D-bifurcation.
+    /// The first is the one that was begun at the row, unless that is no P-bifurcation.
     curves: &'a [Curve],
     stability: &'a Stability,
+    levels: LevelLines<'a>,
     row: &'a CurveOrigin,
     crossed: Crossed<'a>,
     family: &'a Family,
@@ -104,15 +111,18 @@ impl Scene<'_> {
         let below = rect.bottom() + Scale::below();
         let mut entries = entries(self.curves, self.family, rect);
         entries.extend(self.stability.entries());
+        entries.extend(self.levels.entries());
         entries.extend(self.crossed.entries());
         let legend = Legend::new(look, entries, width - 2.0 * MARGIN);
         let page = Page::new(look, width, below + legend.height() + MARGIN);
         heading.draw(&page);
         let panel = page.panel(rect, x, y);
         for curve in self.curves {
-            draw_line(&panel, curve, stroke_of(self.curves, curve.kind));
+            let points = (&curve.plane, curve.points.as_slice());
+            draw_points(&panel, points, stroke_of(self.curves, curve.kind));
         }
         self.stability.draw(&panel);
+        self.levels.draw(&panel);
         self.crossed.draw(&panel);
         frame::border(&page, rect);
         across.draw_below(&page, rect, true);
@@ -141,9 +151,9 @@ impl Scene<'_> {
                     continue;
                 };
                 panel.draw(&[place(point)], Shape::Dot(DOT, PAPER, rim()));
-                let at = panel.place(place(point));
                 if number == 0 {
-                    write(page, rect, at, &end.label, GREY, false);
+                    let at = seen(panel, self.plane, &curve.points, end.point);
+                    write(page, rect, at, &end.label, (GREY, false));
                 }
             }
         }
@@ -152,14 +162,17 @@ impl Scene<'_> {
             let at = into_box(self.plane, x, y);
             panel.draw(&[at], Shape::Dot(DOT, PAPER, rim()));
             let at = panel.place(at);
-            write(page, rect, at, &point.label, INK, true);
+            write(page, rect, (at, false), &point.label, (INK, true));
         }
         let Some(first) = self.curves.first() else {
-            if let Some(start) = self.stability.zero_at(self.row.value) {
+            if let Some(curve) = self.levels.curves.first() {
+                self.draw_level_marks(page, panel, rect, curve);
+            } else if let Some(start) = self.stability.zero_at(self.row.value) {
                 let rim = Stroke::solid(D_BIFURCATION, 1.2);
                 panel.draw(&[start], Shape::Dot(DOT, D_BIFURCATION, rim));
                 let at = panel.place(start);
-                write(page, rect, at, &self.row.label, D_BIFURCATION, true);
+                let colour = (D_BIFURCATION, true);
+                write(page, rect, (at, false), &self.row.label, colour);
             }
             return;
         };
@@ -168,8 +181,14 @@ impl Scene<'_> {
         };
         let rim = Stroke::solid(BIFURCATION, 1.2);
         panel.draw(&[place(start)], Shape::Dot(DOT, BIFURCATION, rim));
-        let at = panel.place(place(start));
-        write(page, rect, at, &self.row.label, BIFURCATION, true);
+        let (at, rises) = seen(panel, self.plane, &first.points, first.start);
+        write(
+            page,
+            rect,
+            (at, rises),
+            &self.row.label,
+            (BIFURCATION, true),
+        );
         for (signature, side) in self.row.sides.into_iter().flatten().zip([-1.0, 1.0]) {
             let anchor = if side < 0.0 { HPos::Right } else { HPos::Left };
             let text = small(symbols::plain(&signature.to_string()), anchor, GREY);
@@ -177,9 +196,27 @@ impl Scene<'_> {
         }
     }
 
+    /// The start of the curve of a level with its label, and its ends.
+    fn draw_level_marks(&self, page: &Page, panel: &Panel, rect: Rectangle, curve: &LevelCurve) {
+        let rim = Stroke::solid(INK, 1.2);
+        let ends = curve.ends.iter();
+        let ends = ends.map(|end| (end.point, end.label.as_str(), PAPER, (GREY, false)));
+        let start = (curve.start, self.row.label.as_str(), INK, (INK, true));
+        for (index, label, inside, letters) in ends.chain([start]) {
+            let Some(point) = curve.points.get(index) else {
+                continue;
+            };
+            let place = into_box(self.plane, point.values[0], point.values[1]);
+            panel.draw(&[place], Shape::Dot(DOT, inside, rim));
+            let at = seen(panel, self.plane, &curve.points, index);
+            write(page, rect, at, label, letters);
+        }
+    }
+
     fn caption(&self) -> String {
         let mut text = self.first_in_words();
         text += &self.stability.caption();
+        text += &self.levels.caption();
         text += &self.crossed.caption();
         text + "\n"
     }
@@ -188,8 +225,12 @@ impl Scene<'_> {
     fn first_in_words(&self) -> String {
         let [first, second] = self.plane.sides();
         let Some(curve) = self.curves.first() else {
+            let what = match self.levels.curves.first() {
+                Some(curve) => format!("Where {}", curve.words()),
+                None => "The fixed point".to_owned(),
+            };
             return format!(
-                "The fixed point in the plane of {} and {}, begun at {} at {} = {}.",
+                "{what} in the plane of {} and {}, begun at {} at {} = {}.",
                 first.parameter,
                 second.parameter,
                 self.row.label,
@@ -243,6 +284,11 @@ impl Scene<'_> {
         }
         for (curve, [x, y]) in self.stability.data() {
             text += &format!("{},{x},{y},0,0,{}\n", curve.name, curve.kind.name());
+        }
+        for (name, _, point) in self.levels.data() {
+            let ([x, y], [dx, dy]) = (point.values, point.to_edge);
+            let status = point.status().word();
+            text += &format!("{name},{x},{y},{dx},{dy},{status}\n");
         }
         for (row, [dx, dy], status) in self.crossed.data() {
             let ([x, y], label) = (row.values, &row.label);
@@ -303,65 +349,42 @@ pub(super) fn entries<'c>(
     entries
 }
 
-/// Draws a curve with its band, in dashes where it is not located.
-pub(super) fn draw_line(panel: &Panel, curve: &Curve, stroke: Stroke) {
-    let edge = |sign: f64| {
-        let points = curve.points.iter();
-        points.map(move |point| {
-            let [x, y] = [0, 1].map(|k| point.values[k] + sign * point.to_edge[k]);
-            into_box(&curve.plane, x, y)
-        })
+/// Where one of the points of a curve is on the page, and whether the curve rises to the right there.
+fn seen(panel: &Panel, plane: &Plane, points: &[CurvePoint], index: usize) -> ((f64, f64), bool) {
+    let last = points.len().saturating_sub(1);
+    let place = |index: usize| {
+        let values = points
+            .get(index.min(last))
+            .map_or([0.0; 2], |point| point.values);
+        panel.place(into_box(plane, values[0], values[1]))
     };
-    let mut outline: Vec<(f64, f64)> = edge(1.0).collect();
-    outline.extend(edge(-1.0).collect::<Vec<_>>().into_iter().rev());
-    panel.draw(&outline, Shape::Area(stroke.colour.at(BAND)));
-    for (places, located) in pieces(curve) {
-        let stroke = if located {
-            stroke
-        } else {
-            stroke.dashed(DASHES)
-        };
-        panel.draw(&places, Shape::Line(stroke));
-    }
+    let (before, after) = (place(index.saturating_sub(1)), place(index + 1));
+    let rises = (after.0 - before.0) * (after.1 - before.1) < 0.0;
+    (place(index), rises)
 }
 
-/// Pieces of the line of which both ends are located, or not.
-fn pieces(curve: &Curve) -> Vec<(Vec<(f64, f64)>, bool)> {
-    let mut pieces: Vec<(Vec<(f64, f64)>, bool)> = Vec::new();
-    for pair in curve.points.windows(2) {
-        let mut both = pair.iter();
-        let located = both.all(|point| point.status() == BifurcationStatus::Located);
-        let [a, b] = [0, 1].map(|k| into_box(&curve.plane, pair[k].values[0], pair[k].values[1]));
-        match pieces.last_mut().filter(|piece| piece.1 == located) {
-            Some((places, _)) => places.push(b),
-            None => pieces.push((vec![a, b], located)),
-        }
-    }
-    pieces
-}
-
-/// A place moved into the box.
-fn into_box(plane: &Plane, x: f64, y: f64) -> (f64, f64) {
-    let [first, second] = plane.sides();
-    (
-        x.clamp(first.from, first.to),
-        y.clamp(second.from, second.to),
-    )
-}
-
-/// Writes beside a point, above it and toward the middle of the panel, where that is free.
-fn write(page: &Page, rect: Rectangle, at: (f64, f64), words: &str, colour: Colour, bold: bool) {
-    let is_left = at.0 < rect.left + 0.5 * rect.width;
-    let (anchor, side) = if is_left {
-        (HPos::Left, 1.0)
-    } else {
-        (HPos::Right, -1.0)
+/// Writes beside a point of a curve, on the side on which the curve is not: above it where there is room, or else below.
+fn write(
+    page: &Page,
+    rect: Rectangle,
+    (at, rises): ((f64, f64), bool),
+    words: &str,
+    (colour, bold): (Colour, bool),
+) {
+    let above = if rises { -1.0 } else { 1.0 };
+    let fits = |side: f64, down: f64| {
+        let (x, y) = (at.0 + side * ROOM, at.1 + 2.0 * down);
+        (rect.left..=rect.right()).contains(&x) && (rect.top..=rect.bottom()).contains(&y)
     };
-    let down = if at.1 < rect.top + 2.0 * AWAY {
-        AWAY
-    } else {
-        -AWAY
-    };
+    let places = [
+        (above, -AWAY),
+        (-above, AWAY),
+        (-above, -AWAY),
+        (above, AWAY),
+    ];
+    let free = places.into_iter().find(|&(side, down)| fits(side, down));
+    let (side, down) = free.unwrap_or(places[0]);
+    let anchor = if side > 0.0 { HPos::Left } else { HPos::Right };
     let text = Lettering {
         bold,
         ..small(symbols::plain(words), anchor, colour)

@@ -4,7 +4,7 @@
 use plotters_backend::text_anchor::HPos;
 
 use super::Sketch;
-use super::curve::{draw_line, entries, stroke_of};
+use super::curve::{entries, stroke_of};
 use crate::continuation::curve::{Curve, EndReason, SweepInPlane};
 use crate::continuation::map::{RegimeMap, RegionPicture, RegionSample};
 use crate::density::Observable;
@@ -17,9 +17,11 @@ use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape, small}
 use crate::figure::canvas::style::{BLANK, Colour, INK, MARGIN, PAPER, Stroke, TICK_TEXT};
 use crate::figure::canvas::symbols;
 use crate::figure::parts::crossed::Crossed;
+use crate::figure::parts::curve_line::draw_points;
 use crate::figure::parts::inset;
+use crate::figure::parts::level_lines::LevelLines;
 use crate::figure::parts::names::{self, symbol_of};
-use crate::figure::parts::region_room::Room;
+use crate::figure::parts::region_room::{Room, parted_by};
 use crate::figure::parts::stability::Stability;
 use crate::figure::print::{Figure, Print};
 use crate::system::Family;
@@ -66,6 +68,10 @@ pub(in crate::figure) fn sketches<'a>(
                     &map.plane,
                     observable.axes().len() == family.model().axes.len(),
                 ),
+                levels: LevelLines {
+                    plane: &map.plane,
+                    curves: &map.levels,
+                },
                 family,
                 look: &print.look,
             };
@@ -84,6 +90,7 @@ struct Scene<'a> {
     curves: Vec<&'a Curve>,
     crossed: Crossed<'a>,
     stability: Stability,
+    levels: LevelLines<'a>,
     family: &'a Family,
     look: &'a Look,
 }
@@ -136,9 +143,10 @@ impl Scene<'_> {
         }
         for curve in &self.curves {
             let stroke = stroke_of(self.curves.iter().copied(), curve.kind);
-            draw_line(&panel, curve, stroke);
+            draw_points(&panel, (&curve.plane, &curve.points), stroke);
         }
         self.stability.draw(&panel);
+        self.levels.draw(&panel);
         self.crossed.draw(&panel);
         self.draw_ends(&page, &panel);
         frame::border(&page, rect);
@@ -184,7 +192,11 @@ impl Scene<'_> {
 
     /// Where each region's words stand, on the page, with the words; `None` where they have no room.
     fn word_places(&self, ground: &Ground, rect: Rectangle) -> Vec<RegionText<'_>> {
-        let room = Room::new(&ground.picture);
+        let lines = self.levels.lines().chain(self.stability.lines());
+        let shares = |line: Vec<[f64; 2]>| line.into_iter().map(|one| self.map.plane.shares(one));
+        let lines: Vec<Vec<[f64; 2]>> = lines.map(|line| shares(line).collect()).collect();
+        let parted = parted_by(&ground.picture, &lines);
+        let room = Room::new(&parted);
         let mut places: Vec<RegionText<'_>> = Vec::new();
         for (number, region) in ground.picture.regions.iter().enumerate() {
             let text = words(region.signature);
@@ -232,6 +244,7 @@ impl Scene<'_> {
     ) -> Legend {
         let mut entries = entries(self.curves.iter().copied(), self.family, rect);
         entries.extend(self.stability.entries());
+        entries.extend(self.levels.entries());
         entries.extend(self.crossed.entries());
         if let Some(ground) = ground {
             for (kind, signature) in ground.kinds.iter().enumerate() {
@@ -287,6 +300,7 @@ impl Scene<'_> {
             );
         }
         text += &self.stability.caption();
+        text += &self.levels.caption();
         text += &self.crossed.caption();
         if self.map.interrupted {
             text += " The map was interrupted before it was complete.";
@@ -306,6 +320,10 @@ impl Scene<'_> {
         }
         for (curve, [x, y]) in self.stability.data() {
             text += &format!("curve {},{x},{y},{}\n", curve.name, curve.kind.name());
+        }
+        for (name, curve, point) in self.levels.data() {
+            let [x, y] = point.values;
+            text += &format!("curve {name},{x},{y},{}\n", curve.words());
         }
         for node in &self.map.nodes {
             let [x, y] = node.values;

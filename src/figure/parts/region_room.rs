@@ -64,6 +64,26 @@ impl<'p> Room<'p> {
     }
 }
 
+/// The picture with pixels on some lines taken from their regions, so that words keep off them; places are those of the
+/// box with sides of length one.
+pub(crate) fn parted_by(picture: &RegionPicture, lines: &[Vec<[f64; 2]>]) -> RegionPicture {
+    let mut parted = picture.clone();
+    let size = picture.size;
+    for piece in lines.iter().flat_map(|line| line.windows(2)) {
+        let [from, to] = [piece[0], piece[1]].map(|at| [0, 1].map(|k| at[k] * size[k] as f64));
+        let steps = (to[0] - from[0]).abs().max((to[1] - from[1]).abs()).ceil();
+        for step in 0..=steps as usize {
+            let share = step as f64 / steps.max(1.0);
+            let [column, row] = [0, 1].map(|k| {
+                let at = from[k] + share * (to[k] - from[k]);
+                (at.max(0.0) as usize).min(size[k] - 1)
+            });
+            parted.pixels[row * size[0] + column] = usize::MAX;
+        }
+    }
+    parted
+}
+
 /// For the pixels of a line, the distance to the nearer end of the run of one region that each is in.
 fn run_lengths(line: &[usize], owners: &[usize], lengths: &mut [u32]) {
     for run in line.chunk_by(|&a, &b| owners[a] == owners[b]) {

@@ -53,6 +53,12 @@ impl Stability {
         places.next().is_none().then_some(first)
     }
 
+    /// The places that each goes through.
+    pub(crate) fn lines(&self) -> impl Iterator<Item = Vec<[f64; 2]>> {
+        let points = self.0.iter().map(|curve| curve.points.iter());
+        points.map(|points| points.map(|point| point.values).collect())
+    }
+
     /// What the legend says of them.
     pub(crate) fn entries(&self) -> Vec<(Swatch, String)> {
         let mut entries: Vec<(Swatch, String)> = Vec::new();

@@ -2,7 +2,7 @@
 
 use super::row::FirstRow;
 use crate::continuation::curve::{CurveError, Plane};
-use crate::continuation::{BifurcationStatus, SweepResult};
+use crate::continuation::{BifurcationStatus, Label, SweepResult};
 use crate::sweep_file::{Diagnostic, Report, Sweep, list};
 
 /// Share of an axis by which a bound may be beyond it: rounding.
@@ -29,8 +29,8 @@ pub(crate) fn check_curves(sweep: &Sweep) -> Result<(), Report> {
     plane(sweep)?.map_or(Ok(()), |plane| check_corners(sweep, &plane))
 }
 
-/// The rows of a result that are followed: those that `curve.rows` names, or all that an indicator has located, or the
-/// exponent of a fixed point, and that are in the box. With `only`, the one that can be followed, where none is named.
+/// The rows of a result that are followed: those that `curve.rows` names, or all that an indicator has located, an
+/// exponent or the level of a number, and that are in the box. With `only`, the one that can be followed, where none is named.
 ///
 /// # Errors
 /// A report where one is not there, or which one is not clear.
@@ -65,25 +65,32 @@ pub fn curve_rows<'r>(
     Ok(rows.filter(is_wanted).collect())
 }
 
-/// P- and D-bifurcations of a sweep.
+/// P- and D-bifurcations of a sweep, and crossings of levels.
 fn all_rows(result: &SweepResult) -> impl Iterator<Item = FirstRow<'_>> {
-    result.labels.iter().filter_map(|label| {
-        let shape = label.bifurcation().map(FirstRow::Shape);
-        shape.or_else(|| label.d_bifurcation().map(FirstRow::Stability))
+    let is_of_point = result.subject.family.questions.fixed_point.is_some();
+    result.labels.iter().filter_map(move |label| match label {
+        Label::Bifurcation(row) => Some(FirstRow::Shape(row)),
+        Label::Level(row) if is_of_point && label.d_bifurcation().is_some() => {
+            Some(FirstRow::Stability(row))
+        }
+        Label::Level(row) => Some(FirstRow::Level(row)),
+        Label::End { .. } | Label::Failure { .. } => None,
     })
 }
 
 fn followable(result: &SweepResult) -> impl Iterator<Item = FirstRow<'_>> {
-    all_rows(result).filter(|row| row.has_curve(result))
+    all_rows(result).filter(|row| row.has_curve())
 }
 
 fn by_label<'r>(label: &str, result: &'r SweepResult) -> Result<FirstRow<'r>, Report> {
     let rows = || all_rows(result);
     rows().find(|row| row.label() == label).ok_or_else(|| {
-        Diagnostic::new(format!("the sweep has no P- or D-bifurcation `{label}`"))
-            .allowed(rows_in_words(result))
-            .nearest(label, rows().map(FirstRow::label))
-            .into()
+        Diagnostic::new(format!(
+            "the sweep has no P- or D-bifurcation, and no crossing of a level, `{label}`"
+        ))
+        .allowed(rows_in_words(result))
+        .nearest(label, rows().map(FirstRow::label))
+        .into()
     })
 }
 
@@ -100,17 +107,11 @@ fn rows_in_words(result: &SweepResult) -> String {
 }
 
 pub(super) fn no_indicator(row: FirstRow<'_>, result: &SweepResult) -> Report {
-    let title = match row {
-        FirstRow::Shape(row) => format!(
-            "{} was located by {}: it has no indicator whose zero could be followed",
-            row.label,
-            row.method()
-        ),
-        FirstRow::Stability(row) => format!(
-            "{} is a zero of the exponent along the density, which is too dear at every value to be followed: sweep at other values of the second parameter instead",
-            row.label
-        ),
-    };
+    let by = row.words(result);
+    let title = format!(
+        "{} was located by {by}: it has no indicator whose zero could be followed",
+        row.label()
+    );
     Diagnostic::new(title).allowed(rows_in_words(result)).into()
 }
 

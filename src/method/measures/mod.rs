@@ -19,7 +19,7 @@ use crate::continuation::measure::{DIVERGENCE, EXPONENT};
 use crate::continuation::{Measure, MeasureColumn, MeasureKind, Subject};
 use crate::density::{EstimatedDensity, Observable};
 use crate::space::CellSpace;
-use crate::system::{Family, System};
+use crate::system::{Family, MeasureLevel, Questions, System};
 
 /// The columns of exponents, where a family asks for them.
 fn exponent_columns(family: &Family) -> impl Iterator<Item = MeasureColumn> {
@@ -113,6 +113,32 @@ pub(crate) fn columns_of_family(family: &Family) -> Vec<MeasureColumn> {
     let columns = asked.chain(exponent_columns(family));
     let columns = columns.chain(rotation::rotation_columns(family));
     columns.chain(forcing::forcing_columns(family)).collect()
+}
+
+/// Of what a family asks for, that without which some measures have no numbers.
+pub(crate) fn questions_about(family: &Family, asked: &[MeasureLevel]) -> Questions {
+    let is_it = |column: MeasureColumn| {
+        let name = column.kind.name(&column.of);
+        asked.iter().any(|one| one.measure == name)
+    };
+    let mut questions = family.questions.clone();
+    questions.passages.retain(|question| {
+        let mut columns = passage::columns(question).into_iter();
+        columns.any(is_it)
+    });
+    for passage in &mut questions.passages {
+        passage.fields.clear();
+    }
+    if !slow_modes::columns(family).any(is_it) {
+        questions.slow_modes = 0;
+    }
+    if !spectra::columns(family).any(is_it) {
+        questions.spectrum = None;
+    }
+    if !exponent_columns(family).any(is_it) {
+        questions.largest_exponent = None;
+    }
+    questions
 }
 
 /// The measures that a subject asks for.

@@ -5,19 +5,20 @@ use serde_json::Value;
 use super::{BORDER, NO_DENSITY, REASONS};
 use crate::continuation::curve::{
     CodimensionTwoKind, Curve, CurveEnd, CurveOrigin, CurvePoint, CurveWork, DegeneratePoint,
-    EndReason, Plane,
+    EndReason, LevelCurve, Plane,
 };
-use crate::continuation::map::{MapWork, RegimeMap, RegionSample, Untraced};
+use crate::continuation::map::{MapWork, RegimeMap, RegionSample, Untraced, UntracedChange};
 use crate::continuation::{BifurcationStatus, Doubt, ErrorParts, Subject};
 use crate::density::{Density, Observable};
 use crate::method::Problem;
+use crate::system::MeasureLevel;
 use crate::topology::IndicatorKind;
 
 pub(super) fn map(
     value: &Value,
     problem: &Problem,
     plane: Plane,
-    curves: Vec<Curve>,
+    (curves, levels): (Vec<Curve>, Vec<LevelCurve>),
 ) -> Option<RegimeMap> {
     let subject: Subject = problem.subject().clone();
     let sample = |value: &Value| {
@@ -33,8 +34,16 @@ pub(super) fn map(
     };
     let samples = list(&value["samples"], sample)?;
     let untraced = |value: &Value| {
+        let asked = &value["level"];
+        let of = match asked.is_null() {
+            true => UntracedChange::Signature(count(&value["observable"])?),
+            false => UntracedChange::Level(MeasureLevel {
+                measure: asked[0].as_str()?.to_owned(),
+                level: asked[1].as_f64()?,
+            }),
+        };
         Some(Untraced {
-            observable: count(&value["observable"])?,
+            of,
             pairs: count(&value["pairs"])?,
             near: pair(&value["near"])?,
             reason: value["reason"].as_str()?.to_owned(),
@@ -52,6 +61,7 @@ pub(super) fn map(
         subject,
         plane,
         curves,
+        levels,
     })
 }
 
@@ -63,16 +73,32 @@ pub(super) fn origin(value: &Value) -> Option<CurveOrigin> {
     })
 }
 
+pub(super) fn level(value: &Value) -> Option<LevelCurve> {
+    let points = list(&value["points"], point)?;
+    Some(LevelCurve {
+        asked: MeasureLevel {
+            measure: value["measure"].as_str()?.to_owned(),
+            level: value["level"].as_f64()?,
+        },
+        start: count(&value["start"]).filter(|&place| place < points.len())?,
+        ends: list(&value["ends"], |one| end(one, points.len()))?,
+        work: CurveWork::default(),
+        points,
+    })
+}
+
+/// The end of a curve of so many points.
+fn end(value: &Value, points: usize) -> Option<CurveEnd> {
+    Some(CurveEnd {
+        label: value[0].as_str()?.to_owned(),
+        point: count(&value[1]).filter(|&place| place < points)?,
+        reason: reason(value[2].as_str()?, &value[3])?,
+    })
+}
+
 pub(super) fn curve(value: &Value, plane: &Plane) -> Option<Curve> {
     let points = list(&value["points"], point)?;
     let within = |value: &Value| count(value).filter(|&place| place < points.len());
-    let end = |value: &Value| {
-        Some(CurveEnd {
-            label: value[0].as_str()?.to_owned(),
-            point: within(&value[1])?,
-            reason: reason(value[2].as_str()?, &value[3])?,
-        })
-    };
     let split = |value: &Value| {
         let word = value[2].as_str()?;
         let mut kinds = CodimensionTwoKind::ALL.into_iter();
@@ -91,7 +117,7 @@ pub(super) fn curve(value: &Value, plane: &Plane) -> Option<Curve> {
         },
         kind: IndicatorKind::of_code(value["kind"].as_str()?)?,
         start: within(&value["start"])?,
-        ends: list(&value["ends"], end)?,
+        ends: list(&value["ends"], |one| end(one, points.len()))?,
         degenerate: list(&value["degenerate"], split)?,
         branches: Vec::new(),
         work: CurveWork::default(),

@@ -1,6 +1,6 @@
 //! Sums over the states that a pilot's trajectories visit.
 
-use super::{LocalRates, Pilot, local_rates, summary};
+use super::{LocalRates, Pilot, SLOWER_THAN_SPREAD, local_rates, summary};
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes, System};
 
@@ -110,17 +110,22 @@ impl Record {
         let count = self.inside.max(1) as f64;
         let axis = |value: &dyn Fn(&AxisSums) -> f64| self.axes.iter().map(value).collect();
         let (frequency, damping) = summary(&self.rates, 0.99);
+        let standard_deviation: Vec<f64> = axis(&|sums| {
+            let mean = sums.first / count;
+            (sums.second / count - mean * mean).max(0.0).sqrt()
+        });
+        let noise_intensity: Vec<f64> = axis(&|sums| sums.noise / count);
+        let pairs = noise_intensity.iter().zip(&standard_deviation);
+        let crossing = pairs.map(|(noise, deviation)| noise / (deviation * deviation));
+        let crossing = crossing.filter(|rate| rate.is_finite()).fold(0.0, f64::max);
         Pilot {
             steps,
             outside: self.outside,
             share_inside: self.inside as f64 / self.visits.max(1) as f64,
-            standard_deviation: axis(&|sums| {
-                let mean = sums.first / count;
-                (sums.second / count - mean * mean).max(0.0).sqrt()
-            }),
+            standard_deviation,
             mean_square_width: axis(&|sums| sums.square_width / count),
-            noise_intensity: axis(&|sums| sums.noise / count),
-            frequency,
+            noise_intensity,
+            frequency: frequency.max(SLOWER_THAN_SPREAD * crossing),
             damping,
             cells: self.cells,
         }
