@@ -194,6 +194,12 @@ impl SweepResult {
         self.labels.iter().filter_map(Label::bifurcation)
     }
 
+    /// The levels that are asked for and no value crosses, with the smallest and the largest number found; `None` where
+    /// the number is known nowhere.
+    pub fn uncrossed_levels(&self) -> Vec<(crate::system::MeasureLevel, Option<[f64; 2]>)> {
+        levels::uncrossed(&self.subject.family, &self.points, &self.labels)
+    }
+
     /// Largest Hellinger distance between neighbouring densities that was accepted; `None` with fewer than two.
     pub(crate) fn largest_distance(&self) -> Option<f64> {
         let distances = self.points.iter().filter_map(|point| point.distance);

@@ -7,7 +7,7 @@ use comfy_table::{Table, presets};
 use crate::continuation::{Label, Point, PointStatus, RowWords, SweepResult};
 use crate::job::QUICK_POINTS;
 use crate::run::{doubt_in_words, format_number, format_with_error};
-use crate::system::Family;
+use crate::system::{Family, MeasureLevel};
 
 /// The labelled points as a table, the signatures at both ends, and where the files are.
 pub(in crate::cli) fn text(result: &SweepResult, folder: &Path) -> String {
@@ -24,6 +24,7 @@ pub(in crate::cli) fn text(result: &SweepResult, folder: &Path) -> String {
             family.parameter()
         );
     }
+    text += &levels(result);
     let solved = |point: &Point| !point.densities.is_empty();
     if !result.points.is_empty() && !result.points.iter().any(solved) {
         text += nothing_to_draw(result);
@@ -93,6 +94,25 @@ fn table(family: &Family, rows: &[&Label]) -> String {
         Some(format!(" {}: {reason}\n", row.name()))
     });
     trimmed.join("\n") + "\n" + &reasons.collect::<String>()
+}
+
+/// Which levels no value crosses, and what the numbers are instead.
+fn levels(result: &SweepResult) -> String {
+    let left = result.uncrossed_levels().into_iter();
+    // To three digits or so.
+    let rounded = |value: f64| format_with_error(value, 1e-3 * value.abs()).0;
+    let line = |(asked, span): (MeasureLevel, Option<[f64; 2]>)| {
+        let (name, level) = (&asked.measure, format_number(asked.level));
+        match span {
+            Some([low, high]) => format!(
+                "no value crosses the level {name} = {level}: the number is from {} to {}\n",
+                rounded(low),
+                rounded(high)
+            ),
+            None => format!("the level {name} = {level} is not crossed: no value has the number\n"),
+        }
+    };
+    left.map(line).collect()
 }
 
 /// The signatures at both ends of the sweep.
