@@ -75,16 +75,20 @@ impl Formula {
 
     /// Values at which the slope is zero on one side of a place where it jumps, and the number of peaks changes.
     fn jumps(&self) -> Vec<f64> {
-        let beside = self.breaks.iter().flat_map(|at| [at - 1e-11, at + 1e-11]);
-        let mut values: Vec<f64> = beside.map(|x| (self.zero)(x)).collect();
+        let sides = || self.breaks.iter().flat_map(|at| [at - 1e-11, at + 1e-11]);
+        let mut values: Vec<f64> = sides().map(|x| (self.zero)(x)).collect();
+        let n = 100_000;
+        let (low, high) = self.within;
+        let at = |i: usize| low + (high - low) * (i as f64 + 0.31) / f64::from(n);
+        let mut places: Vec<f64> = (0..n as usize).map(at).chain(sides()).collect();
+        places.sort_by(f64::total_cmp);
+        let zeros: Vec<f64> = places.into_iter().map(|x| (self.zero)(x)).collect();
         let peaks = |theta: f64| {
-            let n = 100_000;
-            let (low, high) = self.within;
-            let at = |i: usize| low + (high - low) * (i as f64 + 0.31) / f64::from(n);
-            let falls = |i: &usize| (self.zero)(at(i - 1)) < theta && (self.zero)(at(*i)) >= theta;
-            (1..n as usize).filter(falls).count()
+            let falls = |pair: &&[f64]| pair[0] < theta && pair[1] >= theta;
+            zeros.windows(2).filter(falls).count()
         };
-        let small = 5e-4 * (self.ends.1 - self.ends.0);
+        // Both sides of a break are among the places, so that what is born beside it is told from what vanishes at it.
+        let small = 1e-5 * (self.ends.1 - self.ends.0);
         values.retain(|one| self.ends.0 < *one && *one < self.ends.1);
         values.retain(|one| peaks(one - small) != peaks(one + small));
         values

@@ -81,7 +81,7 @@ fn wells(dice: &mut Dice) -> Slope {
         .collect();
     let one = |[at, depth, width]: &[f64; 3]| {
         let w = width * width;
-        format!(" + {depth} (x - ({at}))/{w} exp(-(x - ({at}))^2/(2 * {w}))")
+        format!(" + {depth} (x - ({at})) exp(-(x - ({at}))^2/(2 * {w}))/{w}")
     };
     Slope {
         family: "wells at random places",
