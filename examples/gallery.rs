@@ -10,9 +10,9 @@ use std::time::Instant;
 
 use pbif::cancellation::Cancellation;
 use pbif::continuation::SweepResult;
-use pbif::continuation::curve::{CurveOrigin, Plane};
+use pbif::continuation::curve::{CurveOrigin, CurveTree, Plane};
 use pbif::figure::Figures;
-use pbif::job::curve_rows;
+use pbif::job::{FirstRow, curve_rows};
 use pbif::sweep_file::{StartingFile, Sweep, SweepFile, starting_files};
 
 const BEGINNING: &str = "# Gallery\n\n\
@@ -112,9 +112,13 @@ fn stability(
         (&curve.parameter, curve.from, curve.to),
     )?;
     let mut text = String::new();
-    for row in curve_rows(sweep, found, false)? {
+    // The lines of a fixed point follow from the equations, and are in every figure of the plane.
+    let none = CurveTree::default();
+    let rows = curve_rows(sweep, found, false)?.into_iter();
+    for row in rows.filter(|row| matches!(row, FirstRow::Stability(_))) {
         let origin = CurveOrigin::from(row);
-        let figures = Figures::of_curves((&plane, &[]), (&origin, &[]), family, file.title());
+        let followed = (&plane, &none);
+        let figures = Figures::of_curves(followed, (&origin, &[]), family, file.title());
         for figure in figures.draw("curve")? {
             let picture = format!("{}_curve.svg", file.name);
             std::fs::write(images.join(&picture), figure.svg())?;

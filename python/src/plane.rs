@@ -54,7 +54,7 @@ impl Plane {
             sweep: Arc::clone(sweep),
             content: StoredPlaneContent::Curves(
                 Box::new(plane.clone()),
-                tree,
+                Box::new(tree),
                 CurveOrigin::from(row),
             ),
             plane,

@@ -173,7 +173,7 @@ pub enum StoredPlaneContent {
     /// A map of regimes.
     Map(Box<RegimeMap>),
     /// Curves that were begun at a row of a sweep.
-    Curves(Box<Plane>, CurveTree, CurveOrigin),
+    Curves(Box<Plane>, Box<CurveTree>, CurveOrigin),
 }
 
 /// The file of a map's folder, or of that of curves.
@@ -266,7 +266,8 @@ impl StoredPlane {
                 levels,
                 missed: Vec::new(),
             };
-            return Ok(StoredPlaneContent::Curves(Box::new(plane), tree, origin));
+            let (plane, tree) = (Box::new(plane), Box::new(tree));
+            return Ok(StoredPlaneContent::Curves(plane, tree, origin));
         }
         let map = map(&self.all["map"], problem, plane, (curves, levels));
         let map = map.ok_or_else(|| broken("its map cannot be understood"))?;
