@@ -184,9 +184,8 @@ impl Plane {
             let names = [curve.observable.name(family), curve.kind.name().to_owned()];
             one(names, &curve.points, &curve.ends)
         };
-        let level = |curve: &LevelCurve| {
-            one([String::new(), curve.words()], &curve.points, &curve.ends)
-        };
+        let level =
+            |curve: &LevelCurve| one([String::new(), curve.words()], &curve.points, &curve.ends);
         let shapes = self.curves_of().iter().map(shape);
         shapes.chain(self.levels_of().iter().map(level)).collect()
     }

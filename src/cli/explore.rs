@@ -83,7 +83,7 @@ fn of_plane(stored: &StoredPlane, arguments: &ExploreArguments) -> Result<Outcom
     let page = threads.install(|| match &content {
         StoredPlaneContent::Map(map) => StoredPage::of_map(&sweep, map, &cancellation, &count),
         StoredPlaneContent::Curves(plane, tree, origin) => {
-            let curves = (tree, origin.label.as_str());
+            let curves = (&**tree, origin.label.as_str());
             StoredPage::of_curves(&sweep, plane, curves, &cancellation, &count)
         }
     });

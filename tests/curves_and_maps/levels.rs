@@ -79,9 +79,6 @@ fn assert_on(curve: &LevelCurve, plane: &Plane, of: impl Fn([f64; 2]) -> f64) ->
         );
         worst = worst.max(off / point.error);
     }
-    let largest = (curve.points.iter()).fold(0.0, |most: f64, point| most.max(point.error));
-    let points = curve.points.len();
-    println!("{points} points, error {largest:.1e} at most, off by {worst:.2} of it at most");
     worst
 }
 
