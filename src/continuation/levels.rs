@@ -9,7 +9,7 @@ use super::doubt::{BifurcationStatus, Doubt, status_of};
 use super::measure::{
     DECAY_DISCRIMINANT, EXPONENT, Measure, MeasureKind, SPECTRAL_CURVATURE, SPECTRAL_RISE,
 };
-use super::{CellCheck, Label, Point, SolveReport, Subject};
+use super::{CellCheck, Point, SolveReport, Subject};
 use crate::system::{ExponentMethod, Family, MeasureLevel};
 use crate::topology::two_sided_limit;
 
@@ -217,29 +217,6 @@ pub(super) fn crossings(
     };
     let all = asked_of(&subject.family);
     all.iter().flat_map(of_level).collect()
-}
-
-/// The levels that a family asks for and no value of a sweep crosses, with the smallest and the largest number found;
-/// `None` where the number is known nowhere.
-pub(super) fn uncrossed(
-    family: &Family,
-    points: &[Point],
-    labels: &[Label],
-) -> Vec<(MeasureLevel, Option<[f64; 2]>)> {
-    let is_crossed = |asked: &MeasureLevel| {
-        let mut rows = labels.iter();
-        rows.any(|row| matches!(row, Label::Level(one) if one.asked == *asked))
-    };
-    let span = |asked: &MeasureLevel| {
-        let numbers = points
-            .iter()
-            .filter_map(|one| measure_of(&one.report, asked));
-        let numbers = numbers.map(|one| [one.value; 2]);
-        numbers.reduce(|[low, high], [value, _]| [low.min(value), high.max(value)])
-    };
-    let levels = family.questions.levels.iter();
-    let left = levels.filter(|asked| !is_crossed(asked));
-    left.map(|asked| (asked.clone(), span(asked))).collect()
 }
 
 /// The value to solve next, where interpolation leaves more than is wanted.

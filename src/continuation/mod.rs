@@ -197,7 +197,19 @@ impl SweepResult {
     /// The levels that are asked for and no value crosses, with the smallest and the largest number found; `None` where
     /// the number is known nowhere.
     pub fn uncrossed_levels(&self) -> Vec<(crate::system::MeasureLevel, Option<[f64; 2]>)> {
-        levels::uncrossed(&self.subject.family, &self.points, &self.labels)
+        let is_crossed = |asked: &crate::system::MeasureLevel| {
+            let mut rows = self.labels.iter();
+            rows.any(|row| matches!(row, Label::Level(one) if one.asked == *asked))
+        };
+        let span = |asked: &crate::system::MeasureLevel| {
+            let points = self.points.iter();
+            let numbers = points.filter_map(|one| levels::measure_of(&one.report, asked));
+            let numbers = numbers.map(|one| [one.value; 2]);
+            numbers.reduce(|[low, high], [value, _]| [low.min(value), high.max(value)])
+        };
+        let levels = self.subject.family.questions.levels.iter();
+        let left = levels.filter(|asked| !is_crossed(asked));
+        left.map(|asked| (asked.clone(), span(asked))).collect()
     }
 
     /// Largest Hellinger distance between neighbouring densities that was accepted; `None` with fewer than two.

@@ -67,8 +67,8 @@ impl<'a> Figures<'a> {
     }
 
     /// The figure `curve` of curves in one plane, the first of which was begun at a row of a sweep over its first
-    /// parameter, and of those of levels and of a fixed point; none without a curve. What `sweeps` over one of the parameters located
-    /// is marked. `family` gives names and symbols.
+    /// parameter, and of those of levels and of a fixed point; none without a curve. What `sweeps` over one of the
+    /// parameters located is marked. `family` gives names and symbols.
     pub fn of_curves(
         (plane, curves): (&'a Plane, &'a CurveTree),
         (row, sweeps): (&'a CurveOrigin, &'a [SweepInPlane]),

@@ -17,7 +17,6 @@ use crate::continuation::{DensitySource, SourceError, SweepResult};
 use crate::figure::{Figure, Figures};
 use crate::run::{JobFolder, JournalledSource, Layout, RunError, curve_files, format_number};
 use crate::sweep_file::{CurveSettings, Diagnostic, Report, Sweep};
-use crate::topology::Detector as _;
 use refusals::{check_corners, no_indicator, plane, refusal, refused_plane, which_parameter};
 
 /// The curves from one row of a sweep, as `[curve]` of its file asks for them.
@@ -112,7 +111,7 @@ impl<'a> CurveJob<'a> {
         let (plane, options) = (&self.plane, self.options());
         if let FirstRow::Level(row) = self.row {
             let start = ([row.value, self.held], &row.asked);
-            let how = (&options, self.sweep.detector().confidence());
+            let how = (&options, self.sweep.confidence());
             let level = follow_level(source, plane, start, how, cancellation, observer)?;
             return Ok(CurveTree {
                 levels: vec![level],

@@ -216,21 +216,20 @@ pub fn pilot(
     Ok(record.finish(2 * steps))
 }
 
-/// The rate at which noise, or the drift, takes a state across a fair part of the range of an axis, the largest of all.
-/// It is slower than a drift that holds the state in Ω changes along the axis, and matters where the drift does not
-/// change at all, as that of dry friction alone.
+/// The rate at which noise takes a state across a fair part of the range of an axis, the largest of all. It is slower
+/// than a drift that holds the state in Ω changes along the axis, and matters where the drift does not change at all,
+/// as that of dry friction alone.
 fn rate_across(system: &dyn System, space: &CellSpace, seed: u64) -> f64 {
     let mut largest: f64 = 0.0;
     for scout in 0..SCOUTS {
         let state = place(space, seed, scout, true);
-        let drift = system.drift_at(0.0, &state);
         let mut intensity = vec![0.0; space.dimension()];
         for noise in system.noises() {
             intensity[noise.axis] += 0.5 * noise.at(0.0, &state).powi(2);
         }
-        for ((axis, drift), noise) in space.axes().iter().zip(drift).zip(intensity) {
+        for (axis, noise) in space.axes().iter().zip(intensity) {
             let part = PART * (axis.to() - axis.from());
-            let rate = SLOWER * (noise / (part * part)).max(PART * drift.abs() / part);
+            let rate = SLOWER * noise / (part * part);
             largest = largest.max(if rate.is_finite() { rate } else { 0.0 });
         }
     }

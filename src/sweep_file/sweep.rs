@@ -12,7 +12,7 @@ use crate::continuation::map::{
 use crate::continuation::{DensitySource, Observer, SourceError, SweepError, SweepResult, sweep};
 use crate::method::{MethodError, MethodSource, Problem, questions_about};
 use crate::system::MeasureLevel;
-use crate::topology::PersistenceDetector;
+use crate::topology::{Detector as _, PersistenceDetector};
 
 /// Everything a sweep needs.
 #[derive(Debug, Clone)]
@@ -62,6 +62,11 @@ impl Sweep {
         let rows = settings.map.as_ref().map_or(1, |map| map.points);
         let looks = settings.points * rows * settings.observables.len();
         PersistenceDetector::new(settings.detect.clone(), looks)
+    }
+
+    /// With which confidence numbers that are sampled are told.
+    pub fn confidence(&self) -> f64 {
+        self.detector().confidence()
     }
 
     /// How many sessions solve it side by side.
@@ -185,7 +190,8 @@ impl Sweep {
         Ok(self.source_of(&problem, cancellation)?.0)
     }
 
-    /// The same of a source that works out the measures of some levels too, and no others that take solves of their own.
+    /// The same of a source that works out the measures of some levels too, and no others that take solves of their
+    /// own.
     ///
     /// # Errors
     /// As [`Sweep::source_in`].

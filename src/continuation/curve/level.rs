@@ -25,8 +25,8 @@ const APART_SAMPLED: f64 = 0.04;
 const CHORD: f64 = 0.08;
 const NEW: f64 = 0.3;
 
-/// Least change of the slope across a curve that is reckoned with, relative and per length: what neighbouring points show
-/// is small by chance where the slope is the same along the curve.
+/// Least change of the slope across a curve that is reckoned with, relative and per length: what neighbouring points
+/// show is small by chance where the slope is the same along the curve.
 const LEAST_BEND: f64 = 2.0;
 
 /// What the curve of a level is called, by its place among several.
@@ -64,8 +64,8 @@ impl LevelCurve {
 }
 
 /// Follows the curve on which a number is at a level from a place where it is, in both directions, in the box of a
-/// plane along whose path `source` solves. Where numbers are sampled, errors hold with this confidence. `observer` is told
-/// the values of every point as it is met.
+/// plane along whose path `source` solves. Where numbers are sampled, errors hold with this confidence. `observer` is
+/// told the values of every point as it is met.
 ///
 /// Cancelled, the curve ends early, and says so.
 ///

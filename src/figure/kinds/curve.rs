@@ -363,7 +363,8 @@ fn seen(panel: &Panel, plane: &Plane, points: &[CurvePoint], index: usize) -> ((
     (place(index), rises)
 }
 
-/// Writes beside a point of a curve, on the side on which the curve is not: above it where there is room, or else below.
+/// Writes beside a point of a curve, on the side on which the curve is not: above it where there is room, or else
+/// below.
 fn write(
     page: &Page,
     rect: Rectangle,

@@ -30,7 +30,8 @@ pub(crate) fn check_curves(sweep: &Sweep) -> Result<(), Report> {
 }
 
 /// The rows of a result that are followed: those that `curve.rows` names, or all that an indicator has located, an
-/// exponent or the level of a number, and that are in the box. With `only`, the one that can be followed, where none is named.
+/// exponent or the level of a number, and that are in the box. With `only`, the one that can be followed, where none is
+/// named.
 ///
 /// # Errors
 /// A report where one is not there, or which one is not clear.
@@ -86,7 +87,7 @@ fn by_label<'r>(label: &str, result: &'r SweepResult) -> Result<FirstRow<'r>, Re
     let rows = || all_rows(result);
     rows().find(|row| row.label() == label).ok_or_else(|| {
         Diagnostic::new(format!(
-            "the sweep has no P- or D-bifurcation, and no crossing of a level, `{label}`"
+            "the sweep has no P- or D-bifurcation `{label}`, and no such crossing of a level"
         ))
         .allowed(rows_in_words(result))
         .nearest(label, rows().map(FirstRow::label))
