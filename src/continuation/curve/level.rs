@@ -5,25 +5,19 @@
 //! expected and one across it, and lies where the line through them is at the level.
 
 use super::found::label_ends;
+use super::level_reader::{Met, Reader, across, left_of};
 use super::walk::{
-    ACROSS, CLOSE, FAR, FEWEST_CLOSED, GENTLE, GROWTH, MOST_CORRECTIONS, SHARP, SHORTEST,
-    WITHIN_NOISE, dot, nearest_side, passes, predict,
+    ACROSS, FAR, FEWEST_CLOSED, GENTLE, GROWTH, SHARP, SHORTEST, dot, nearest_side, passes, predict,
 };
-use super::walked::{apart, within};
+use super::walked::apart;
 use super::{CurveEnd, CurveError, CurveOptions, CurvePoint, CurveWork, EndReason, Plane};
 use crate::cancellation::Cancellation;
-use crate::continuation::levels::{is_sampled, limit_of, measure_of, over};
-use crate::continuation::{DensitySource, Doubt, ErrorParts, Session, SourceError};
+use crate::continuation::levels::{is_sampled, limit_of};
+use crate::continuation::{DensitySource, Doubt, ErrorParts, SourceError};
 use crate::system::MeasureLevel;
 
-/// Distance of the two places of a point at least, and of numbers that are sampled; sides of the box have length one.
-const APART: f64 = 5e-4;
-const APART_SAMPLED: f64 = 0.04;
-
-/// Of numbers that are sampled: shortest chord that tells the direction of the curve, and the share that a point has in
-/// the slope, the rest being that of the points before.
+/// Shortest chord that tells the direction of the curve of a number that is sampled.
 const CHORD: f64 = 0.08;
-const NEW: f64 = 0.3;
 
 /// Least change of the slope across a curve that is reckoned with, relative and per length: what neighbouring points
 /// show is small by chance where the slope is the same along the curve.
@@ -123,92 +117,13 @@ struct Walker<'a> {
     cancellation: &'a Cancellation,
 }
 
-/// A point as it was met, in the box with sides of length one.
-#[derive(Debug, Clone)]
-struct Met {
-    foot: [f64; 2],
-    /// Toward rising arclength, of length one.
-    along: [f64; 2],
-    /// Change of the number per length to the left of that direction.
-    slope: f64,
-    arclength: f64,
-    /// The two places that it lies between, or beside: the product of its distances from them.
-    spread: f64,
-    read: Read,
-}
-
-/// The number at a place.
-#[derive(Debug, Clone)]
-struct Read {
-    over: f64,
-    error: f64,
-    is_judged: bool,
-    doubt: Option<Doubt>,
-}
-
-/// A session with the number that is read in it.
-struct Reader<'a> {
-    session: Box<dyn Session>,
-    walker: &'a Walker<'a>,
-    is_ratio: bool,
-    /// Whether neighbouring values differ by samples of their own.
-    is_noisy: bool,
-    /// How many errors of the number are believed to hold the true one.
-    limit: f64,
-    work: CurveWork,
-}
-
-/// A straight line on which a point of the curve is looked for.
-#[derive(Clone, Copy)]
-struct Line {
-    from: [f64; 2],
-    /// Of length one.
-    direction: [f64; 2],
-    /// Change of the number per length, as far as it is known.
-    slope: f64,
-    farthest: f64,
-}
-
-impl Line {
-    fn at(&self, length: f64) -> [f64; 2] {
-        [0, 1].map(|k| self.from[k] + length * self.direction[k])
-    }
-}
-
-impl Met {
-    /// Takes the direction from a point far behind, which samples tell better than the one before, and as much of the
-    /// slope there as is known by more than this point.
-    fn smooth(&mut self, before: &Self, far: &Self) {
-        let chord = [0, 1].map(|k| self.foot[k] - far.foot[k]);
-        let length = chord[0].hypot(chord[1]);
-        if length > 0.0 {
-            self.along = chord.map(|part| part / length);
-        }
-        self.slope = before.slope + NEW * (self.slope - before.slope);
-    }
-
-    /// The same seen from the other end of the curve.
-    fn turned(&self) -> Self {
-        Self {
-            along: self.along.map(|part| -part),
-            slope: -self.slope,
-            arclength: -self.arclength,
-            ..self.clone()
-        }
-    }
-}
-
-/// The direction to the left of another one.
-fn left_of([x, y]: [f64; 2]) -> [f64; 2] {
-    [-y, x]
-}
-
 impl Walker<'_> {
     fn reader(&self, is_ratio: bool) -> Reader<'_> {
         let subject = self.source.subject();
         Reader {
             session: self.source.open(self.cancellation),
-            walker: self,
+            plane: self.plane,
+            asked: self.asked,
             is_ratio,
             is_noisy: is_sampled(subject, self.asked),
             limit: limit_of(subject, self.asked, self.confidence),
@@ -411,121 +326,5 @@ impl Walker<'_> {
             }
         };
         all.iter().enumerate().map(point).collect()
-    }
-}
-
-/// The line across a curve at a place, along the end of a side of the box where the place is on it.
-fn across(
-    from: [f64; 2],
-    along: [f64; 2],
-    (border, slope): (Option<usize>, f64),
-    farthest: f64,
-) -> Line {
-    let left = left_of(along);
-    let Some(side) = border else {
-        return Line {
-            from,
-            direction: left,
-            slope,
-            farthest,
-        };
-    };
-    let mut direction = [0.0; 2];
-    direction[1 - side] = 1.0;
-    Line {
-        from,
-        direction,
-        slope: slope * dot(left, direction),
-        farthest,
-    }
-}
-
-impl Reader<'_> {
-    /// Distance of the two places of a point at least.
-    fn apart(&self) -> f64 {
-        if self.is_noisy { APART_SAMPLED } else { APART }
-    }
-
-    /// The number at a place.
-    fn read(&mut self, at: [f64; 2]) -> Result<Read, EndReason> {
-        let coordinate = self.walker.plane.lay(at);
-        let solution = self
-            .session
-            .solve(coordinate)
-            .map_err(|error| match error {
-                SourceError::Interrupted => EndReason::Interrupted,
-                SourceError::Method(error) => EndReason::NoDensity(error.to_string()),
-            })?;
-        let report = &solution.report;
-        self.work.count(report);
-        if !report.status.is_resolved() {
-            return Err(EndReason::NoDensity(report.status.word().to_owned()));
-        }
-        let asked = self.walker.asked;
-        let measure = measure_of(report, asked).ok_or(EndReason::NumberLost)?;
-        if self.is_ratio && measure.value <= 0.0 {
-            return Err(EndReason::NumberLost);
-        }
-        let (over, error) = over(measure, asked.level, self.is_ratio);
-        Ok(Read {
-            over,
-            error: self.limit * error,
-            is_judged: measure.error.is_some(),
-            doubt: Doubt::of_status(report.status, None),
-        })
-    }
-
-    /// The point of the curve on a line across it, which has this direction there.
-    fn meet(&mut self, line: &Line, along: [f64; 2]) -> Result<Met, EndReason> {
-        let mut before: Option<(f64, Read)> = None;
-        let (mut slope, mut length) = (line.slope, 0.0);
-        for _ in 0..MOST_CORRECTIONS {
-            let read = self.read(line.at(length))?;
-            if let Some((at, before)) = &before {
-                slope = (read.over - before.over) / (length - at);
-            }
-            if !(slope != 0.0 && slope.is_finite()) {
-                return Err(EndReason::Singular);
-            }
-            let gap = -read.over / slope;
-            let root = length + gap;
-            if root.abs() > line.farthest.max(self.apart()) {
-                break;
-            }
-            let noise = WITHIN_NOISE * read.error / slope.abs();
-            let is_near = gap.abs() <= self.apart().max(if self.is_noisy { noise } else { 0.0 });
-            if let Some((at, _)) = before.as_ref().filter(|_| is_near) {
-                let spread = (root - at).abs() * gap.abs();
-                let foot = line.at(root).map(|part| part.clamp(0.0, 1.0));
-                // What is on the curve to rounding has no slope of its own to be known better by.
-                let slope = slope / dot(left_of(along), line.direction);
-                return Ok(Met {
-                    foot,
-                    along,
-                    slope,
-                    arclength: 0.0,
-                    spread,
-                    read,
-                });
-            }
-            before = Some((length, read));
-            length = self.beside(line, length, gap);
-        }
-        match self.is_noisy {
-            true => Err(EndReason::Sampling),
-            false => Err(EndReason::NotConverged),
-        }
-    }
-
-    /// Where the number is read next: where its level is expected, or farther, so that the two places tell its slope.
-    fn beside(&self, line: &Line, length: f64, gap: f64) -> f64 {
-        let least = self.apart().max(CLOSE);
-        let step = gap.abs().max(least).copysign(gap);
-        let there = length + step;
-        if within(line.at(there)) {
-            there
-        } else {
-            length - least.copysign(gap)
-        }
     }
 }

@@ -27,6 +27,7 @@ mod degenerate;
 mod fold_end;
 mod found;
 mod level;
+mod level_reader;
 mod piece;
 mod plane;
 mod polynomial;
