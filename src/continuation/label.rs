@@ -2,7 +2,7 @@
 
 use super::LevelCrossing;
 use super::doubt::{BifurcationStatus, Doubt, status_of};
-use super::levels::SpectralChange;
+use super::spectral_change::SpectralChange;
 use super::{ErrorParts, Point};
 use crate::density::Observable;
 use crate::system::Family;

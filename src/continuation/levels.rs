@@ -6,9 +6,8 @@
 //! slope.
 
 use super::doubt::{BifurcationStatus, Doubt, status_of};
-use super::measure::{
-    DECAY_DISCRIMINANT, EXPONENT, Measure, MeasureKind, SPECTRAL_CURVATURE, SPECTRAL_RISE,
-};
+use super::measure::{DECAY_DISCRIMINANT, EXPONENT, Measure};
+use super::spectral_change::SpectralChange;
 use super::{CellCheck, Point, SolveReport, Subject};
 use crate::system::{ExponentMethod, Family, MeasureLevel};
 use crate::topology::two_sided_limit;
@@ -72,55 +71,6 @@ impl LevelCrossing {
     }
 }
 
-/// How the shape of a power spectrum changes, or the kind of the slowest deviations.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum SpectralChange {
-    /// The maximum at frequency zero becomes a minimum, or a minimum a maximum.
-    AtZero,
-    /// A maximum at a frequency above zero is born beside a minimum, or vanishes with it.
-    Fold,
-    /// The two slowest modes become a pair that oscillates, or a pair becomes two that do not.
-    Pair,
-}
-
-impl SpectralChange {
-    /// All.
-    const ALL: [Self; 3] = [Self::AtZero, Self::Fold, Self::Pair];
-
-    /// Those of a power spectrum.
-    const OF_POWER: [Self; 2] = [Self::AtZero, Self::Fold];
-
-    /// The number that is zero there.
-    fn measure(self) -> MeasureKind {
-        match self {
-            Self::AtZero => SPECTRAL_CURVATURE,
-            Self::Fold => SPECTRAL_RISE,
-            Self::Pair => DECAY_DISCRIMINANT,
-        }
-    }
-
-    /// What there is before and after where that number rises.
-    pub(super) fn sides(self) -> [&'static str; 2] {
-        match self {
-            Self::AtZero => ["maximum at zero", "minimum at zero"],
-            Self::Fold => ["falling", "maximum above zero"],
-            Self::Pair => ["pair that oscillates", "two that decay"],
-        }
-    }
-
-    /// What happens to a spectrum, or to deviations, where the number rises, and where it falls.
-    pub(super) fn words(self, rises: bool) -> &'static str {
-        match (self, rises) {
-            (Self::AtZero, true) => "the spectrum's maximum leaves frequency zero",
-            (Self::AtZero, false) => "the spectrum's maximum comes to frequency zero",
-            (Self::Fold, true) => "maximum and minimum of the spectrum appear",
-            (Self::Fold, false) => "maximum and minimum of the spectrum vanish",
-            (Self::Pair, true) => "the slowest deviations stop oscillating",
-            (Self::Pair, false) => "the slowest deviations begin to oscillate",
-        }
-    }
-}
-
 /// A measure less its level at one value of the parameter, with its error.
 #[derive(Clone, Copy)]
 struct Excess {
@@ -151,7 +101,7 @@ impl Root {
 
 /// The levels of which the crossings are wanted: those that are asked for, and zero for the exponent along the density
 /// and for the numbers that say how a spectrum, or the kind of the slowest deviations, changes.
-pub(super) fn asked_of(family: &Family) -> Vec<MeasureLevel> {
+pub(crate) fn asked_of(family: &Family) -> Vec<MeasureLevel> {
     let question = family.questions.spectrum.iter();
     let powers = question.flat_map(|question| {
         let pairs = question.pairs.iter().filter(|(one, other)| one == other);

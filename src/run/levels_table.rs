@@ -9,7 +9,7 @@ use crate::continuation::curve::{CurvePoint, LevelCurve, Plane, level_name};
 pub(super) const NAME: &str = "levels.csv";
 
 /// A point of such a curve as a row.
-struct Row<'a> {
+pub(super) struct LevelRow<'a> {
     name: String,
     label: String,
     curve: &'a LevelCurve,
@@ -33,29 +33,36 @@ pub(super) fn levels_file(
         let start = starts.get(index).copied().unwrap_or("start");
         let labels = end_labels(&curve.ends, (curve.start, start), curve.points.len());
         let points = labels.into_iter().zip(&curve.points);
-        points.map(move |(label, point)| Row {
+        points.map(move |(label, point)| LevelRow {
             name: level_name(index),
             label,
             curve,
             point,
         })
     });
-    let rows: Vec<Row<'_>> = rows.collect();
+    let rows: Vec<LevelRow<'_>> = rows.collect();
+    let columns = columns(plane);
+    Ok(Some((NAME.to_owned(), columns.csv(&rows)?)))
+}
+
+/// Its columns.
+pub(super) fn columns<'a>(plane: &Plane) -> Columns<'a, LevelRow<'a>> {
     let [first, second] = plane.sides().each_ref().map(|side| side.parameter.clone());
     let edges = [0, 1].map(|k| format!("edge_{}", plane.sides()[k].parameter));
     let [edge_first, edge_second] = edges;
-    let columns = Columns(vec![
-        word("curve", |row: &Row<'_>| row.name.clone()),
-        word("label", |row: &Row<'_>| row.label.clone()),
-        number(first, |row: &Row<'_>| row.point.values[0]),
-        number(second, |row: &Row<'_>| row.point.values[1]),
-        number("error", |row: &Row<'_>| row.point.error),
-        number(edge_first, |row: &Row<'_>| row.point.to_edge[0]),
-        number(edge_second, |row: &Row<'_>| row.point.to_edge[1]),
-        word("measure", |row: &Row<'_>| row.curve.asked.measure.clone()),
-        number("level", |row: &Row<'_>| row.curve.asked.level),
-        number("arclength", |row: &Row<'_>| row.point.arclength),
-        word("status", |row: &Row<'_>| row.point.status().word()),
-    ]);
-    Ok(Some((NAME.to_owned(), columns.csv(&rows)?)))
+    Columns(vec![
+        word("curve", |row: &LevelRow<'_>| row.name.clone()),
+        word("label", |row: &LevelRow<'_>| row.label.clone()),
+        number(first, |row: &LevelRow<'_>| row.point.values[0]),
+        number(second, |row: &LevelRow<'_>| row.point.values[1]),
+        number("error", |row: &LevelRow<'_>| row.point.error),
+        number(edge_first, |row: &LevelRow<'_>| row.point.to_edge[0]),
+        number(edge_second, |row: &LevelRow<'_>| row.point.to_edge[1]),
+        word("measure", |row: &LevelRow<'_>| {
+            row.curve.asked.measure.clone()
+        }),
+        number("level", |row: &LevelRow<'_>| row.curve.asked.level),
+        number("arclength", |row: &LevelRow<'_>| row.point.arclength),
+        word("status", |row: &LevelRow<'_>| row.point.status().word()),
+    ])
 }

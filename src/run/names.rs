@@ -2,9 +2,11 @@
 //! table, and no two arrays of a store, may have one name: the later would take the place of the earlier.
 
 use super::columns::Named;
-use super::{arrays, checks, codimension, export, features_table, map, points_table, spectra};
-use crate::continuation::MeasureColumn;
+use super::{
+    arrays, checks, codimension, export, features_table, levels_table, map, points_table, spectra,
+};
 use crate::continuation::curve::Plane;
+use crate::continuation::{MeasureColumn, asked_of};
 use crate::density::Observable;
 use crate::method::columns_of_family;
 use crate::sweep_file::{Diagnostic, Place, Report, Settings};
@@ -139,8 +141,11 @@ fn of_map(family: &Family, observables: &[Observable], plane: &Plane) -> Vec<Tog
     all
 }
 
-fn of_curves(family: &Family, plane: &Plane) -> [Together; 2] {
-    [
+fn of_curves(family: &Family, plane: &Plane) -> Vec<Together> {
+    let levels = levels_table::columns(plane).names();
+    let has_levels = !asked_of(family).is_empty();
+    let levels = has_levels.then_some(("columns of levels.csv", levels));
+    let others = [
         (
             "columns of curves.csv",
             codimension::several_columns(family, plane, 0).names(),
@@ -149,5 +154,6 @@ fn of_curves(family: &Family, plane: &Plane) -> [Together; 2] {
             "columns of codimension_two.csv",
             codimension::columns(family, plane).names(),
         ),
-    ]
+    ];
+    others.into_iter().chain(levels).collect()
 }

@@ -64,7 +64,7 @@ impl Sweep {
         PersistenceDetector::new(settings.detect.clone(), looks)
     }
 
-    /// With which confidence numbers that are sampled are told.
+    /// With which confidence, between zero and one, errors of sampled numbers are told: `detect.confidence`.
     pub fn confidence(&self) -> f64 {
         self.detector().confidence()
     }

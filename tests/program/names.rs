@@ -120,6 +120,14 @@ fn a_second_parameter_is_not_called_as_a_column_of_its_tables_is() {
         );
     }
     assert!(refused(&plane("curve", "slope")).contains("curves.csv"));
+    let levels = format!("{}\n[levels]\nmean_x = 0.1", plane("curve", "measure"));
+    let said = refused(&levels);
+    assert!(
+        said.contains("columns of levels.csv would be called `measure`"),
+        "{said}"
+    );
+    let fine = SweepFile::parse("mine.toml", &plane("curve", "measure"));
+    check_names(&fine.validate().unwrap()).unwrap();
     let fine = SweepFile::parse("mine.toml", &plane("map", "status_2"))
         .validate()
         .unwrap();

@@ -5,10 +5,9 @@
 //! expected and one across it, and lies where the line through them is at the level.
 
 use super::found::label_ends;
-use super::level_reader::{Met, Reader, across, left_of};
-use super::walk::{
-    ACROSS, FAR, FEWEST_CLOSED, GENTLE, GROWTH, SHARP, SHORTEST, dot, nearest_side, passes, predict,
-};
+use super::level_number::{LevelNode, NumberSession, across, left_of};
+use super::steps::{Expected, dot, steps};
+use super::walk::{ACROSS, FAR, SHARP};
 use super::walked::apart;
 use super::{CurveEnd, CurveError, CurveOptions, CurvePoint, CurveWork, EndReason, Plane};
 use crate::cancellation::Cancellation;
@@ -73,17 +72,19 @@ pub fn follow_level(
     cancellation: &Cancellation,
     observer: &mut dyn FnMut([f64; 2]),
 ) -> Result<LevelCurve, CurveError> {
+    let subject = source.subject();
     let walker = Walker {
         source,
         plane,
         asked,
         options,
-        confidence,
+        is_sampled: is_sampled(subject, asked),
+        limit: limit_of(subject, asked, confidence),
         cancellation,
     };
     let (mut reader, first) = walker.begin(plane.place(start))?;
     observer(plane.values(first.foot));
-    let (mut onward, last) = walker.one_way(&mut reader, &first, observer);
+    let (onward, last) = walker.one_way(&mut reader, &first, observer);
     let mut ends = vec![last];
     let (mut work, mut back) = (reader.work, Vec::new());
     if !matches!(ends[0], EndReason::Closed | EndReason::Interrupted) {
@@ -96,8 +97,8 @@ pub fn follow_level(
         ends.insert(0, before);
     }
     let before = back.len();
-    let back = back.iter().rev().map(Met::turned);
-    let met: Vec<Met> = back.chain([first]).chain(onward.drain(..)).collect();
+    let back = back.iter().rev().map(LevelNode::turned);
+    let met: Vec<LevelNode> = back.chain([first]).chain(onward).collect();
     Ok(LevelCurve {
         asked: asked.clone(),
         start: before,
@@ -113,26 +114,28 @@ struct Walker<'a> {
     plane: &'a Plane,
     asked: &'a MeasureLevel,
     options: &'a CurveOptions,
-    confidence: f64,
+    /// Whether neighbouring values of the number differ by samples of their own.
+    is_sampled: bool,
+    /// How many of its errors are believed to hold the true one.
+    limit: f64,
     cancellation: &'a Cancellation,
 }
 
 impl Walker<'_> {
-    fn reader(&self, is_ratio: bool) -> Reader<'_> {
-        let subject = self.source.subject();
-        Reader {
+    fn reader(&self, is_ratio: bool) -> NumberSession<'_> {
+        NumberSession {
             session: self.source.open(self.cancellation),
             plane: self.plane,
             asked: self.asked,
             is_ratio,
-            is_noisy: is_sampled(subject, self.asked),
-            limit: limit_of(subject, self.asked, self.confidence),
+            is_sampled: self.is_sampled,
+            limit: self.limit,
             work: CurveWork::default(),
         }
     }
 
     /// The point of the curve at its start, its direction toward larger values of the second parameter.
-    fn begin(&self, at: [f64; 2]) -> Result<(Reader<'_>, Met), CurveError> {
+    fn begin(&self, at: [f64; 2]) -> Result<(NumberSession<'_>, LevelNode), CurveError> {
         let refused = |reason: EndReason| match reason {
             EndReason::Interrupted => CurveError::Source(SourceError::Interrupted),
             EndReason::Sampling => CurveError::TooFewSamples,
@@ -179,76 +182,34 @@ impl Walker<'_> {
     /// The points after the start, in its direction, and why there are no more.
     fn one_way(
         &self,
-        reader: &mut Reader<'_>,
-        start: &Met,
+        reader: &mut NumberSession<'_>,
+        start: &LevelNode,
         observer: &mut dyn FnMut([f64; 2]),
-    ) -> (Vec<Met>, EndReason) {
-        let mut nodes: Vec<Met> = Vec::new();
-        let mut bend = [0.0; 2];
-        let longest = self.options.largest_step;
-        let mut step = 0.5 * longest;
-        loop {
+    ) -> (Vec<LevelNode>, EndReason) {
+        let bends = !self.is_sampled;
+        let mut next = |nodes: &[LevelNode], expected: Expected| {
             let here = nodes.last().unwrap_or(start);
-            if nodes.len() >= self.options.most_points {
-                return (nodes, EndReason::TooManyPoints);
+            let mut node = self.next(reader, here, expected)?;
+            if self.is_sampled {
+                let is_far = |one: &&LevelNode| apart(one.foot, node.foot) >= CHORD;
+                node.smooth(here, nodes.iter().rev().find(is_far).unwrap_or(start));
             }
-            let Some((at, border)) = predict((here.foot, here.along), bend, step) else {
-                let side = nearest_side(here.foot);
-                return (nodes, EndReason::Border(side));
-            };
-            match self.next(reader, here, (at, border), step) {
-                Ok(mut node) => {
-                    if reader.is_noisy {
-                        let far = nodes
-                            .iter()
-                            .rev()
-                            .find(|one| apart(one.foot, node.foot) >= CHORD);
-                        node.smooth(here, far.unwrap_or(start));
-                    }
-                    let length = apart(node.foot, here.foot);
-                    let is_gentle = dot(node.along, here.along) > GENTLE;
-                    if !reader.is_noisy {
-                        bend = [0, 1].map(|k| (node.along[k] - here.along[k]) / length);
-                    }
-                    observer(self.plane.values(node.foot));
-                    let is_closed =
-                        nodes.len() >= FEWEST_CLOSED && passes(here.foot, node.foot, start.foot);
-                    if is_closed {
-                        let arclength = here.arclength + apart(here.foot, start.foot);
-                        let last = Met {
-                            arclength,
-                            ..start.clone()
-                        };
-                        nodes.push(last);
-                        return (nodes, EndReason::Closed);
-                    }
-                    nodes.push(node);
-                    if let Some(side) = border {
-                        return (nodes, EndReason::Border(side));
-                    }
-                    if is_gentle {
-                        step = (GROWTH * step).min(longest);
-                    }
-                }
-                Err(EndReason::Interrupted) => return (nodes, EndReason::Interrupted),
-                Err(reason) => {
-                    step *= 0.5;
-                    if step < SHORTEST * longest {
-                        return (nodes, reason);
-                    }
-                }
-            }
-        }
+            Ok((node, true))
+        };
+        let mut seen = |node: &LevelNode| {
+            observer(self.plane.values(node.foot));
+            None
+        };
+        steps(start, (self.options, bends), &mut next, &mut seen)
     }
 
     /// The point of the curve near where it is expected, or why it is not there.
     fn next(
         &self,
-        reader: &mut Reader<'_>,
-        here: &Met,
-        (at, border): ([f64; 2], Option<usize>),
-        step: f64,
-    ) -> Result<Met, EndReason> {
+        reader: &mut NumberSession<'_>,
+        here: &LevelNode,
+        Expected { at, border, step }: Expected,
+    ) -> Result<LevelNode, EndReason> {
         let length = apart(at, here.foot);
         // The chord is the tangent in the middle of the step.
         let ahead = |to: [f64; 2]| {
@@ -265,21 +226,20 @@ impl Walker<'_> {
         let onward = [0, 1].map(|k| met.foot[k] - here.foot[k]);
         met.along = ahead(met.foot);
         met.arclength = here.arclength + apart(met.foot, here.foot);
-        let is_sharp = !reader.is_noisy && dot(met.along, here.along) < SHARP;
+        let is_sharp = !self.is_sampled && dot(met.along, here.along) < SHARP;
         let turns = is_sharp || dot(onward, here.along) <= 0.0;
         let keeps_side = met.slope * here.slope > 0.0;
         match turns || !keeps_side {
-            true if reader.is_noisy => Err(EndReason::Sampling),
+            true if self.is_sampled => Err(EndReason::Sampling),
             true => Err(EndReason::NotConverged),
             false => Ok(met),
         }
     }
 
     /// The points with their errors.
-    fn points(&self, all: &[Met]) -> Vec<CurvePoint> {
+    fn points(&self, all: &[LevelNode]) -> Vec<CurvePoint> {
         let sides = self.plane.sides();
-        let is_noisy = is_sampled(self.source.subject(), self.asked);
-        let point = |(index, met): (usize, &Met)| {
+        let point = |(index, met): (usize, &LevelNode)| {
             let steepness = met.slope.abs();
             let beside = index
                 .checked_sub(1)
@@ -290,8 +250,8 @@ impl Walker<'_> {
             });
             let bend = bend.max(LEAST_BEND);
             let (own, line) = (met.read.error / steepness, 0.5 * bend * met.spread);
-            let (solver, sampling) = match is_noisy {
-                true => (0.0, own),
+            let (solver, sampling) = match self.is_sampled {
+                true => (line, own),
                 false => (own + line, 0.0),
             };
             let parts = ErrorParts {
@@ -302,7 +262,7 @@ impl Walker<'_> {
             };
             let error = parts.total();
             let imprecise = error > self.options.tolerance;
-            let known = imprecise.then_some(match is_noisy {
+            let known = imprecise.then_some(match self.is_sampled {
                 true => Doubt::FewSamples(error),
                 false => Doubt::SolverError(error),
             });

@@ -2,25 +2,20 @@
 //! curve allows.
 
 use super::reading::{NoReading, Reader, Reading};
-use super::walked::{WalkPoint, Walked, apart, within};
+use super::steps::{CLOSE, CurveNode, Expected, dot, steps};
+use super::walked::{WalkPoint, Walked, apart};
 use super::{CurveError, EndReason, Task, companion};
 use crate::continuation::SourceError;
 use crate::density::hellinger;
 
-/// A place nearer to the curve than this is on it: its foot is the point.
-pub(super) const CLOSE: f64 = 1e-4;
 /// Of a sampled density a place is on the curve when it is nearer than this share of the sampling error there.
 pub(super) const WITHIN_NOISE: f64 = 0.5;
 /// Corrections of one point.
 pub(super) const MOST_CORRECTIONS: usize = 6;
 /// A correction that leaves more than this share of the distance does not converge.
 const CONVERGING: f64 = 0.5;
-/// Shortest step, over the longest.
-pub(super) const SHORTEST: f64 = 1.0 / 256.0;
-/// Cosine of the angle between neighbouring tangents below which a step is halved, and above which steps grow.
+/// Cosine of the angle between neighbouring tangents below which a step is halved.
 pub(super) const SHARP: f64 = 0.906;
-pub(super) const GENTLE: f64 = 0.99;
-pub(super) const GROWTH: f64 = 1.6;
 /// Farthest that the curve may be from where it is said to begin.
 pub(super) const FAR: f64 = 0.05;
 /// Places of an indicator at neighbouring points farther apart than this, in ranges of the axes, are not one place that
@@ -28,8 +23,6 @@ pub(super) const FAR: f64 = 0.05;
 const ONE_PLACE: f64 = 0.1;
 /// How many times as fast as along a curve its indicator's gradient may change across it.
 pub(super) const ACROSS: f64 = 2.0;
-/// Fewest points of a closed curve.
-pub(super) const FEWEST_CLOSED: usize = 6;
 
 impl Task<'_> {
     /// Both directions from the start.
@@ -103,66 +96,26 @@ impl Task<'_> {
         start: &WalkPoint,
         observer: &mut dyn FnMut([f64; 2]),
     ) -> (Vec<WalkPoint>, EndReason) {
-        let mut nodes: Vec<WalkPoint> = Vec::new();
-        let mut bend = [0.0; 2];
         let mut known = start.reading.companions.clone();
-        let longest = self.options.largest_step;
-        let mut step = 0.5 * longest;
-        loop {
+        let mut next = |nodes: &[WalkPoint], expected: Expected| {
             let here = nodes.last().unwrap_or(start);
-            if nodes.len() >= self.options.most_points {
-                return (nodes, EndReason::TooManyPoints);
-            }
-            let Some((at, border)) = predict((here.foot, here.tangent), bend, step) else {
-                let side = nearest_side(here.foot);
-                return (nodes, EndReason::Border(side));
-            };
             let sought = Sought {
                 near: &here.reading.indicator.place,
-                border,
-                farthest: 0.5 * step,
+                border: expected.border,
+                farthest: 0.5 * expected.step,
                 before: Some(here),
             };
-            let found = correct(reader, at, &sought)
-                .and_then(|(node, corrections)| self.follows(here, node).map(|n| (n, corrections)));
-            match found {
-                Ok((node, corrections)) => {
-                    let length = apart(node.foot, here.foot);
-                    bend = [0, 1].map(|k| (node.tangent[k] - here.tangent[k]) / length);
-                    let gentle = dot(node.tangent, here.tangent) > GENTLE && corrections <= 1;
-                    step = if gentle {
-                        (GROWTH * step).min(longest)
-                    } else {
-                        step
-                    };
-                    observer(self.plane.values(node.foot));
-                    if nodes.len() >= FEWEST_CLOSED && passes(here.foot, node.foot, start.foot) {
-                        let arclength = here.arclength + apart(here.foot, start.foot);
-                        nodes.push(WalkPoint {
-                            arclength,
-                            ..start.clone()
-                        });
-                        return (nodes, EndReason::Closed);
-                    }
-                    let turned = companion::turn(&mut known, &node.reading.companions);
-                    nodes.push(node);
-                    // The last point is beyond the end, which lies between it and the one before.
-                    if turned.is_some() && companion::ends_there(self.start.kind) {
-                        return (nodes, EndReason::FeatureLost);
-                    }
-                    if let Some(side) = border {
-                        return (nodes, EndReason::Border(side));
-                    }
-                }
-                Err(EndReason::Interrupted) => return (nodes, EndReason::Interrupted),
-                Err(reason) => {
-                    step *= 0.5;
-                    if step < SHORTEST * longest {
-                        return (nodes, reason);
-                    }
-                }
-            }
-        }
+            let (node, corrections) = correct(reader, expected.at, &sought)?;
+            Ok((self.follows(here, node)?, corrections <= 1))
+        };
+        let mut seen = |node: &WalkPoint| {
+            observer(self.plane.values(node.foot));
+            let turned = companion::turn(&mut known, &node.reading.companions);
+            // The last point is beyond the end, which lies between it and the one before.
+            let ends = turned.is_some() && companion::ends_there(self.start.kind);
+            ends.then_some(EndReason::FeatureLost)
+        };
+        steps(start, (self.options, true), &mut next, &mut seen)
     }
 
     /// The node as the next one of a curve, or why it is not.
@@ -185,6 +138,24 @@ impl Task<'_> {
         }
         node.arclength = here.arclength + apart(node.foot, here.foot);
         Ok(node)
+    }
+}
+
+impl CurveNode for WalkPoint {
+    fn foot(&self) -> [f64; 2] {
+        self.foot
+    }
+    fn tangent(&self) -> [f64; 2] {
+        self.tangent
+    }
+    fn arclength(&self) -> f64 {
+        self.arclength
+    }
+    fn at_arclength(&self, arclength: f64) -> Self {
+        Self {
+            arclength,
+            ..self.clone()
+        }
     }
 }
 
@@ -271,54 +242,4 @@ fn remainder(reading: &Reading, size: f64, before: Option<&WalkPoint>) -> f64 {
         ACROSS * change / (reading.steepness() * apart(reading.at, before.reading.at))
     });
     0.5 * bend * size * (size + reading.doubt)
-}
-
-/// Where the next point is expected, and the side of the box at whose end it lies, if the step leads out; `None` where
-/// nothing of the box is left in this direction.
-pub(super) fn predict(
-    (foot, tangent): ([f64; 2], [f64; 2]),
-    bend: [f64; 2],
-    step: f64,
-) -> Option<([f64; 2], Option<usize>)> {
-    let at = |step: f64| [0, 1].map(|k| foot[k] + step * tangent[k] + 0.5 * step * step * bend[k]);
-    if within(at(step)) {
-        return Some((at(step), None));
-    }
-    let (mut low, mut high) = (0.0, step);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if within(at(middle)) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    if low < CLOSE {
-        return None;
-    }
-    let mut place = at(low);
-    let beyond = at(high);
-    let side = (0..2).find(|&k| !(0.0..=1.0).contains(&beyond[k]))?;
-    place[side] = if beyond[side] < 0.5 { 0.0 } else { 1.0 };
-    Some((place, Some(side)))
-}
-
-/// The side of the box to whose ends a place is nearest.
-pub(super) fn nearest_side(place: [f64; 2]) -> usize {
-    let gap = |k: usize| place[k].min(1.0 - place[k]);
-    usize::from(gap(1) < gap(0))
-}
-
-/// Whether the line between two points passes by a third.
-pub(super) fn passes(from: [f64; 2], to: [f64; 2], by: [f64; 2]) -> bool {
-    let onward = [to[0] - from[0], to[1] - from[1]];
-    let gap = [by[0] - from[0], by[1] - from[1]];
-    let length = dot(onward, onward);
-    let share = dot(gap, onward) / length;
-    let across = (gap[0] * onward[1] - gap[1] * onward[0]) / length;
-    (0.0..=1.0).contains(&share) && across.abs() < 0.25
-}
-
-pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
 }

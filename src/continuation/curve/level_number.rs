@@ -1,6 +1,7 @@
 //! A number of the steady state read at places of a plane, and where on a line across a curve it is at its level.
 
-use super::walk::{CLOSE, MOST_CORRECTIONS, WITHIN_NOISE, dot};
+use super::steps::{CLOSE, CurveNode, dot};
+use super::walk::{MOST_CORRECTIONS, WITHIN_NOISE};
 use super::walked::within;
 use super::{CurveWork, EndReason, Plane};
 use crate::continuation::levels::{measure_of, over};
@@ -16,7 +17,7 @@ const NEW: f64 = 0.3;
 
 /// A point as it was met, in the box with sides of length one.
 #[derive(Debug, Clone)]
-pub(super) struct Met {
+pub(super) struct LevelNode {
     pub(super) foot: [f64; 2],
     /// Toward rising arclength, of length one.
     pub(super) along: [f64; 2],
@@ -25,26 +26,31 @@ pub(super) struct Met {
     pub(super) arclength: f64,
     /// The two places that it lies between, or beside: the product of its distances from them.
     pub(super) spread: f64,
-    pub(super) read: Read,
+    pub(super) read: NumberRead,
 }
 
 /// The number at a place.
 #[derive(Debug, Clone)]
-pub(super) struct Read {
+pub(super) struct NumberRead {
+    /// The number less its level, or the logarithm of the ratio of both.
     pub(super) over: f64,
+    /// What is believed to hold the true one, in the same unit.
     pub(super) error: f64,
+    /// Whether the number states an error.
     pub(super) is_judged: bool,
+    /// What the solve says against it.
     pub(super) doubt: Option<Doubt>,
 }
 
 /// A session with the number that is read in it.
-pub(super) struct Reader<'a> {
+pub(super) struct NumberSession<'a> {
     pub(super) session: Box<dyn Session>,
     pub(super) plane: &'a Plane,
     pub(super) asked: &'a MeasureLevel,
+    /// Whether logarithms of ratios are taken.
     pub(super) is_ratio: bool,
     /// Whether neighbouring values differ by samples of their own.
-    pub(super) is_noisy: bool,
+    pub(super) is_sampled: bool,
     /// How many errors of the number are believed to hold the true one.
     pub(super) limit: f64,
     pub(super) work: CurveWork,
@@ -52,7 +58,7 @@ pub(super) struct Reader<'a> {
 
 /// A straight line on which a point of the curve is looked for.
 #[derive(Clone, Copy)]
-pub(super) struct Line {
+pub(super) struct Transversal {
     from: [f64; 2],
     /// Of length one.
     direction: [f64; 2],
@@ -61,13 +67,13 @@ pub(super) struct Line {
     farthest: f64,
 }
 
-impl Line {
+impl Transversal {
     fn at(&self, length: f64) -> [f64; 2] {
         [0, 1].map(|k| self.from[k] + length * self.direction[k])
     }
 }
 
-impl Met {
+impl LevelNode {
     /// Takes the direction from a point far behind, which samples tell better than the one before, and as much of the
     /// slope there as is known by more than this point.
     pub(super) fn smooth(&mut self, before: &Self, far: &Self) {
@@ -90,6 +96,24 @@ impl Met {
     }
 }
 
+impl CurveNode for LevelNode {
+    fn foot(&self) -> [f64; 2] {
+        self.foot
+    }
+    fn tangent(&self) -> [f64; 2] {
+        self.along
+    }
+    fn arclength(&self) -> f64 {
+        self.arclength
+    }
+    fn at_arclength(&self, arclength: f64) -> Self {
+        Self {
+            arclength,
+            ..self.clone()
+        }
+    }
+}
+
 /// The direction to the left of another one.
 pub(super) fn left_of([x, y]: [f64; 2]) -> [f64; 2] {
     [-y, x]
@@ -101,10 +125,10 @@ pub(super) fn across(
     along: [f64; 2],
     (border, slope): (Option<usize>, f64),
     farthest: f64,
-) -> Line {
+) -> Transversal {
     let left = left_of(along);
     let Some(side) = border else {
-        return Line {
+        return Transversal {
             from,
             direction: left,
             slope,
@@ -113,7 +137,7 @@ pub(super) fn across(
     };
     let mut direction = [0.0; 2];
     direction[1 - side] = 1.0;
-    Line {
+    Transversal {
         from,
         direction,
         slope: slope * dot(left, direction),
@@ -121,14 +145,18 @@ pub(super) fn across(
     }
 }
 
-impl Reader<'_> {
+impl NumberSession<'_> {
     /// Distance of the two places of a point at least.
     pub(super) fn apart(&self) -> f64 {
-        if self.is_noisy { APART_SAMPLED } else { APART }
+        if self.is_sampled {
+            APART_SAMPLED
+        } else {
+            APART
+        }
     }
 
     /// The number at a place.
-    pub(super) fn read(&mut self, at: [f64; 2]) -> Result<Read, EndReason> {
+    pub(super) fn read(&mut self, at: [f64; 2]) -> Result<NumberRead, EndReason> {
         let coordinate = self.plane.lay(at);
         let solution = self
             .session
@@ -148,7 +176,7 @@ impl Reader<'_> {
             return Err(EndReason::NumberLost);
         }
         let (over, error) = over(measure, asked.level, self.is_ratio);
-        Ok(Read {
+        Ok(NumberRead {
             over,
             error: self.limit * error,
             is_judged: measure.error.is_some(),
@@ -157,8 +185,12 @@ impl Reader<'_> {
     }
 
     /// The point of the curve on a line across it, which has this direction there.
-    pub(super) fn meet(&mut self, line: &Line, along: [f64; 2]) -> Result<Met, EndReason> {
-        let mut before: Option<(f64, Read)> = None;
+    pub(super) fn meet(
+        &mut self,
+        line: &Transversal,
+        along: [f64; 2],
+    ) -> Result<LevelNode, EndReason> {
+        let mut before: Option<(f64, NumberRead)> = None;
         let (mut slope, mut length) = (line.slope, 0.0);
         for _ in 0..MOST_CORRECTIONS {
             let read = self.read(line.at(length))?;
@@ -174,13 +206,13 @@ impl Reader<'_> {
                 break;
             }
             let noise = WITHIN_NOISE * read.error / slope.abs();
-            let is_near = gap.abs() <= self.apart().max(if self.is_noisy { noise } else { 0.0 });
+            let is_near = gap.abs() <= self.apart().max(if self.is_sampled { noise } else { 0.0 });
             if let Some((at, _)) = before.as_ref().filter(|_| is_near) {
                 let spread = (root - at).abs() * gap.abs();
                 let foot = line.at(root).map(|part| part.clamp(0.0, 1.0));
-                // What is on the curve to rounding has no slope of its own to be known better by.
+                // Across the curve, which the line may meet obliquely.
                 let slope = slope / dot(left_of(along), line.direction);
-                return Ok(Met {
+                return Ok(LevelNode {
                     foot,
                     along,
                     slope,
@@ -192,14 +224,14 @@ impl Reader<'_> {
             before = Some((length, read));
             length = self.beside(line, length, gap);
         }
-        match self.is_noisy {
+        match self.is_sampled {
             true => Err(EndReason::Sampling),
             false => Err(EndReason::NotConverged),
         }
     }
 
     /// Where the number is read next: where its level is expected, or farther, so that the two places tell its slope.
-    fn beside(&self, line: &Line, length: f64, gap: f64) -> f64 {
+    fn beside(&self, line: &Transversal, length: f64, gap: f64) -> f64 {
         let least = self.apart().max(CLOSE);
         let step = gap.abs().max(least).copysign(gap);
         let there = length + step;
