@@ -36,13 +36,15 @@ pub(super) struct Expected {
     pub(super) step: f64,
 }
 
-/// The points after the start, in the direction of its tangent, and why there are no more. `next` meets the point that
-/// is expected after those that there are, and says whether that was easy; of a curve that `bends` its bend is used.
-/// `seen` is told each point as it is met, and may end the curve with it.
+/// Meets the point that is expected after those that there are, and says whether that was easy.
+pub(super) type Meet<'a, N> = dyn FnMut(&[N], Expected) -> Result<(N, bool), EndReason> + 'a;
+
+/// The points after the start, in the direction of its tangent, and why there are no more. Of a curve that
+/// `bends` its bend is used. `seen` is told each point as it is met, and may end the curve with it.
 pub(super) fn steps<N: CurveNode>(
     start: &N,
     (options, bends): (&CurveOptions, bool),
-    next: &mut dyn FnMut(&[N], Expected) -> Result<(N, bool), EndReason>,
+    next: &mut Meet<'_, N>,
     seen: &mut dyn FnMut(&N) -> Option<EndReason>,
 ) -> (Vec<N>, EndReason) {
     let mut nodes: Vec<N> = Vec::new();
