@@ -196,6 +196,13 @@ fn fall(check: CellCheck) -> f64 {
     }
 }
 
+/// How many times as much as is stated the schemes may differ on finer cells: two grids that agree better than that may
+/// do so by chance, and a third one is asked.
+const SUSPECT: f64 = 4.0;
+
+/// What is stated at least, as a share of what the schemes differ, where no third grid tells.
+const UNTOLD: f64 = 0.5;
+
 /// The cells that a zero was found on.
 struct Cells<'a> {
     density: &'a EstimatedDensity,
@@ -220,6 +227,8 @@ fn on_finer_cells(
     let chance = by_chance(density, checked.place);
     let (mut own, mut expected) = (zero.error.grid, 0.0);
     let mut found = None;
+    // What is stated at least as long as two grids alone agree.
+    let mut untold = None;
     for times in 1..=MOST_TIMES {
         let again = Checked {
             root: *zero,
@@ -242,6 +251,8 @@ fn on_finer_cells(
                 zero.value = finer.value;
                 (own, expected) = (finer.error, distance / fall(cells.check));
                 found = Some(Ok(times));
+                let is_suspect = times == 1 && finer.error > SUSPECT * zero.error.grid;
+                untold = is_suspect.then_some(UNTOLD * finer.error);
             }
             // What cannot be solved on so many cells says nothing against fewer.
             Some(Err(Doubt::CheckFailed(..))) if times > 1 => break,
@@ -249,9 +260,13 @@ fn on_finer_cells(
             None => break,
         }
         let ErrorParts { grid, .. } = zero.error;
-        if zero.error.total() <= options.tolerance || grid < 0.5 * zero.error.total() {
+        let is_known = zero.error.total() <= options.tolerance || grid < 0.5 * zero.error.total();
+        if is_known && untold.is_none() {
             break;
         }
+    }
+    if let Some(least) = untold {
+        zero.error.grid = zero.error.grid.max(least);
     }
     found
 }
