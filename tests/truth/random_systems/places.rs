@@ -140,6 +140,12 @@ fn what_is_located_where_noise_differs_from_place_to_place_holds_the_truth() {
     print_true(&scores);
 }
 
+/// Two grids agree by chance on this oscillator's fold, within less than half of what they are off.
+#[test]
+fn what_two_grids_agree_on_by_chance_is_not_located() {
+    print_true(&run(cases(oscillator, 1_689_121..1_689_122)));
+}
+
 #[test]
 #[ignore = "prints the table of docs/location.md"]
 fn places_in_full() {
