@@ -45,7 +45,7 @@ pub(super) fn levels_file(
     Ok(Some((NAME.to_owned(), columns.csv(&rows)?)))
 }
 
-/// Its columns.
+/// The columns of that table for curves in this plane.
 pub(super) fn columns<'a>(plane: &Plane) -> Columns<'a, LevelRow<'a>> {
     let [first, second] = plane.sides().each_ref().map(|side| side.parameter.clone());
     let edges = [0, 1].map(|k| format!("edge_{}", plane.sides()[k].parameter));
