@@ -200,8 +200,8 @@ fn fall(check: CellCheck) -> f64 {
 /// do so by chance, and a third one is asked.
 const SUSPECT: f64 = 4.0;
 
-/// What is stated at least where no third grid tells, as a share of what the schemes differ by on the finer cells: most of
-/// that is the error of the second scheme, whose order is lower.
+/// What is stated at least where no third grid tells, as a share of what the schemes differ by on the finer cells. Most
+/// of that is the error of the second scheme, whose order is lower.
 const UNTOLD: f64 = 0.5;
 
 /// The cells that a zero was found on.
