@@ -11,7 +11,6 @@ use std::sync::Arc;
 
 use super::cells::cells;
 use super::exits::Exits;
-use super::nodes::{FEWER_NODES, NODES};
 use super::rim::{beside_border, mend, rim};
 use super::solve::enclosed;
 use super::start::{at_state, at_states_of};
@@ -22,6 +21,7 @@ use crate::generator::{
     AbsorbingGenerator, Closure, Dissipation, GeneratorOptions, assemble_absorbing,
 };
 use crate::space::CellSpace;
+use crate::space::nodes::{FEWER_NODES, NODES};
 use crate::stationary::generator::{AbsorbingSolver, RateOptions};
 use crate::system::{BoundQuantity, System};
 

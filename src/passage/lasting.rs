@@ -1,8 +1,8 @@
 //! A density that lasts, from one grid to another: where the rate is looked for from.
 
-use super::nodes::place_of;
 use crate::MAX_DIMENSION;
 use crate::space::CellSpace;
+use crate::space::nodes::place_of;
 
 /// A density at the nodes of a grid, zero inside the target.
 pub(super) struct Lasting {

@@ -38,7 +38,6 @@
 //! | part | file |
 //! | --- | --- |
 //! | cells, graded toward a barrier of an oscillator | `cells.rs` |
-//! | weights of interpolation from nodes | `nodes.rs` |
 //! | weights of a start | `start.rs` |
 //! | what is known of the steady state, and what its errors do | `density_start.rs` |
 //! | masses of a density in a region | `spread.rs` |
@@ -59,7 +58,6 @@ mod exits;
 mod field;
 mod lasting;
 mod memory;
-mod nodes;
 mod rate;
 mod rim;
 mod solve;

@@ -7,7 +7,6 @@ use super::density_start::DensityStart;
 use super::exits::{Exits, rate_change as entry_change};
 use super::lasting::Lasting;
 use super::memory::GridMemory;
-use super::nodes::{FEWER_NODES, NODES};
 use super::rate::slowest;
 use super::spread::add_density;
 use super::start::add_state;
@@ -16,6 +15,7 @@ use super::{KnownDensity, Passage, PassageError, Start, dot};
 use crate::cancellation::Cancellation;
 use crate::generator::{AbsorbingGenerator, GeneratorOptions, RateChange, assemble_with_changes};
 use crate::space::CellSpace;
+use crate::space::nodes::{FEWER_NODES, NODES};
 use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, Expected, RateOptions};
 use crate::system::{Enclosed, System};
 

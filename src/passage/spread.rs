@@ -4,11 +4,11 @@
 //! Cells that the region's border cuts are integrated up to it: along the axis that is steepest across the border to
 //! the place where each line crosses it, over lines that lie close to each other.
 
-use super::nodes::{AxisWeights, NODES, about, along, each};
 use super::start::{AtCoordinate as _, add_state};
 use super::tensor::{gathered, scattered, whole};
 use crate::MAX_DIMENSION;
 use crate::space::CellSpace;
+use crate::space::nodes::{AxisWeights, NODES, about, along, each};
 
 /// Gauss points of an interval, as shares of its length.
 const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];

@@ -3,9 +3,9 @@
 //! Weights are those of interpolation: for a function of the state that is known at the nodes, the weighted sum is its
 //! value at a state, or its average over a density, to sixth order. The outside of the target alone has weights.
 
-use super::nodes::{AxisWeights, NODES, about, along, each, place_of};
 use super::tensor::{gathered, whole};
 use crate::MAX_DIMENSION;
+use crate::space::nodes::{AxisWeights, NODES, about, along, each, place_of};
 use crate::space::{Axis, CellSpace};
 
 /// Shifts of the nodes that are tried, nearest first, where some of them are inside the target.

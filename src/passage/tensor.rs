@@ -1,6 +1,6 @@
 //! Interpolation on all points of a grid at once: axis by axis, each with the weights of its own nodes.
 
-use super::nodes::AxisWeights;
+use crate::space::nodes::AxisWeights;
 
 /// A field at the points of a grid, from its values at the nodes of another: for each axis one set of weights a point.
 pub(super) fn gathered(values: &[f64], shape: &[usize], axes: &[Vec<AxisWeights>]) -> Vec<f64> {
@@ -66,8 +66,8 @@ pub(super) fn whole(kept: &[bool], shape: &[usize], axes: &[Vec<AxisWeights>]) -
 
 #[cfg(test)]
 mod tests {
-    use super::super::nodes::{NODES, about};
     use super::*;
+    use crate::space::nodes::{NODES, about};
     use crate::space::{Axis, CellSpace};
 
     /// Two grids on one square, the second with other cells, and weights of the first's nodes at the second's.

@@ -20,6 +20,7 @@ mod cells;
 mod fourier;
 mod grading;
 mod hermite;
+pub(crate) mod nodes;
 mod series;
 
 pub use axis::Axis;

@@ -28,27 +28,33 @@ const BESIDE: usize = 4;
 /// What a grid gives, and what it took.
 pub(super) type Worked<T> = Result<(T, AbsorbingWork), SpectrumError>;
 
-/// Solves on the cells of a sweep and on each of the [`FEWER`], side by side; what all of them took.
-pub(super) fn on_grids<T: Send>(
+/// Solves on each of the [`FEWER`] cells, the fewest first, and on those of a sweep, each time with the grid before and
+/// what it gave; what all of them took.
+pub(super) fn on_grids<T>(
     system: &Arc<dyn System>,
     space: &CellSpace,
     steady: Steady<'_>,
     options: &GeneratorOptions,
-    solve: impl Fn(&Grid, &Motion) -> Worked<T> + Sync,
+    mut solve: impl FnMut(&Grid, &Motion, Option<(&CellSpace, &T)>) -> Worked<T>,
 ) -> Worked<(T, Vec<T>)> {
     let grid = |factor| Grid::new(system, space, factor, options);
     let finest = grid(1.0)?;
     let motion = Motion::new(&finest, system.as_ref(), steady).ok_or(SpectrumError::Still)?;
-    let coarse = || FEWER.map(|(factor, _)| solve(&grid(factor)?, &motion));
-    let (on_finest, on_fewer) = rayon::join(|| solve(&finest, &motion), coarse);
-    let (found, mut work) = on_finest?;
+    let mut work = AbsorbingWork::default();
+    let mut before: Option<(CellSpace, T)> = None;
     let mut others = Vec::new();
-    for solved in on_fewer {
-        let (other, more) = solved?;
-        work.factorisations += more.factorisations;
-        work.passes += more.passes;
-        others.push(other);
+    for (factor, _) in FEWER.into_iter().rev() {
+        let coarse = grid(factor)?;
+        let known = before.as_ref().map(|(space, found)| (space, found));
+        let (found, more) = solve(&coarse, &motion, known)?;
+        work.add(more);
+        others.extend(before.replace((coarse.space, found)).map(|one| one.1));
     }
+    let known = before.as_ref().map(|(space, found)| (space, found));
+    let (found, more) = solve(&finest, &motion, known)?;
+    work.add(more);
+    others.extend(before.map(|one| one.1));
+    others.reverse();
     Ok(((found, others), work))
 }
 

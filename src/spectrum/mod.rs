@@ -76,6 +76,7 @@
 //! | the model of a few dozen states | `model.rs` |
 //! | eigenvalues, and their errors on one grid | `modes.rs` |
 //! | the model that has them, at real shifts; at the harmonics of a motion | `real_shifts.rs`, `harmonic_shifts.rs` |
+//! | modes of a grid from those of a coarser one | `carried.rs` |
 //! | how fast and how far states move | `motion.rs` |
 //! | eigenvalues with the errors of the cells | `slow.rs` |
 //! | a model of the resolvent that grows until spectra stand, on one grid | `resolvent.rs` |
@@ -84,6 +85,7 @@
 //! | spectra with the errors of the cells | `power.rs` |
 //! | errors from half of the dissipation and fewer cells | `errors.rs` |
 
+mod carried;
 mod errors;
 mod grid;
 mod harmonic_shifts;

@@ -3,7 +3,6 @@
 use nalgebra::{Complex, DMatrix, DVector};
 use sprs::CsMat;
 
-use super::dot;
 use super::transfer::Transfer;
 
 /// Overlaps of the two spaces smaller than this beside the largest are rounding.
@@ -150,6 +149,8 @@ pub(super) struct GridModel {
     pub(super) rows: Basis,
     pub(super) products: Products,
     pub(super) modes: Vec<(Complex<f64>, f64)>,
+    /// How many of them stand, the first ones; of the rest it is known that they are there.
+    pub(super) standing: usize,
 }
 
 /// Eigenvalues up to the first that fewer vectors do not give as well, each with what they change.
@@ -158,8 +159,12 @@ pub(super) fn standing(all: &[Complex<f64>], fewer: &[Complex<f64>]) -> Vec<(Com
         let distances = fewer.iter().map(|other| (value - other).norm());
         (*value, distances.fold(f64::INFINITY, f64::min))
     };
-    let stands = |(value, change): &(Complex<f64>, f64)| *change <= TOLERANCE * value.norm();
     all.iter().map(change).take_while(stands).collect()
+}
+
+/// Whether fewer vectors give an eigenvalue as well.
+pub(super) fn stands((value, change): &(Complex<f64>, f64)) -> bool {
+    *change <= TOLERANCE * value.norm()
 }
 
 /// Puts modes in the order of their decay rates, of those with the same one in the order of their frequencies.
@@ -174,6 +179,20 @@ pub(super) fn in_order<T>(modes: &mut [T], value: impl Fn(&T) -> Complex<f64>) {
             first = end;
         }
     }
+}
+
+/// a·b, in a fixed order of eight sums, which run at once.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 8];
+    let (left, right) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest = left.remainder().iter().zip(right.remainder());
+    let tail: f64 = rest.map(|(a, b)| a * b).sum();
+    for (a, b) in left.zip(right) {
+        for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
+            *sum += a * b;
+        }
+    }
+    sums.iter().sum::<f64>() + tail
 }
 
 /// A x.

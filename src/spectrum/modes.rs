@@ -5,6 +5,7 @@ use nalgebra::Complex;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+use super::carried::carried;
 use super::errors::{Estimate, Worked};
 use super::grid::Grid;
 use super::harmonic_shifts::near_harmonics;
@@ -12,10 +13,15 @@ use super::model::GridModel;
 use super::motion::{Motion, of_ends};
 use super::real_shifts::at_real_shifts;
 use crate::cancellation::Cancellation;
+use crate::space::CellSpace;
 use crate::stationary::generator::{AbsorbingWork, RateOptions};
 
 /// Modes beyond those that are wanted, in place of some that are none of the equation.
 const SPARE: usize = 1;
+
+/// Modes that are carried to finer cells beyond those, from the fewest cells and from others: there the order of decay
+/// rates may be another.
+const BESIDE: [usize; 2] = [3, 2];
 
 /// Relative change by half of the dissipation from which a number is none of the equation.
 pub(super) const ARTEFACT: f64 = 0.3;
@@ -30,16 +36,28 @@ pub(super) struct GridMode {
     pub(super) value: Complex<f64>,
     /// What half of the dissipation changes.
     pub(super) change: Complex<f64>,
+    /// Whether it stands: of others it is known that they are there.
+    pub(super) stands: bool,
     /// What fewer vectors change, and at most what the ends of the range do.
     pub(super) error: f64,
-    /// Its left vector, known but for a constant and a factor; empty where the mode oscillates.
-    pub(super) left: Vec<f64>,
+    /// Its vectors of either side, the left one known but for a constant, both but for a factor.
+    pub(super) columns: Vec<Complex<f64>>,
+    pub(super) rows: Vec<Complex<f64>>,
 }
 
 impl GridMode {
     /// Extrapolated to no dissipation.
     pub(super) fn extrapolation(&self) -> Complex<f64> {
         self.value + self.change * 2.0
+    }
+
+    /// The left vector; empty where the mode oscillates.
+    pub(super) fn left(&self) -> Vec<f64> {
+        if self.value.im == 0.0 {
+            real(&self.rows)
+        } else {
+            Vec::new()
+        }
     }
 }
 
@@ -49,6 +67,11 @@ pub(super) struct GridModes {
     pub(super) modes: Vec<GridMode>,
     /// The square of half of the difference of the two slowest.
     pub(super) discriminant: Option<Estimate>,
+    /// Those that finer cells begin with, the ones that are none of the equation among them: where two modes are about
+    /// to become a pair they look like that, and are not on other cells.
+    carried: Vec<GridMode>,
+    /// Decay rate up to which none is missing.
+    pub(super) complete: f64,
 }
 
 impl GridModes {
@@ -56,63 +79,91 @@ impl GridModes {
     pub(super) fn of(slowest: Option<GridMode>) -> Self {
         Self {
             modes: slowest.into_iter().collect(),
-            discriminant: None,
+            complete: f64::INFINITY,
+            ..Self::default()
         }
     }
 }
 
-/// The slowest modes of a grid, in the order of their decay rates, a few more than wanted where so many are known.
+/// The slowest modes of a grid, in the order of their decay rates, a few more than wanted where so many are known; from
+/// those of a coarser one, where there is one.
 pub(super) fn modes(
     grid: &Grid,
     wanted: usize,
     motion: &Motion,
+    coarser: Option<(&CellSpace, &GridModes)>,
     (rates, cancellation): (&RateOptions, &Cancellation),
 ) -> Worked<GridModes> {
-    let mut numbers = Xoshiro256PlusPlus::seed_from_u64(SEED);
     let mut work = AbsorbingWork::default();
+    if let Some((coarse, known)) = coarser {
+        let options = (rates, cancellation);
+        let begin = (coarse, known.carried.as_slice());
+        let found = carried(grid, begin, wanted + SPARE, options, &mut work)?;
+        if let Some(found) = found {
+            let found = of_model(grid, found, wanted + SPARE + BESIDE[1], motion);
+            let complete = known.complete;
+            return Ok((GridModes { complete, ..found }, work));
+        }
+    }
+    let mut numbers = Xoshiro256PlusPlus::seed_from_u64(SEED);
     let enough = (wanted + SPARE, motion.rate);
     let options = (rates, cancellation);
     let mut found = at_real_shifts(grid, enough, &mut numbers, options, &mut work)?;
     if found.modes.is_empty() {
         found = near_harmonics(grid, enough, &mut numbers, options, &mut work)?;
     }
+    found.standing = found.modes.len();
+    let most = wanted + SPARE + BESIDE[0];
+    Ok((of_model(grid, found, most, motion), work))
+}
+
+/// What a model tells, so many modes at most to be carried on.
+fn of_model(grid: &Grid, mut found: GridModel, most: usize, motion: &Motion) -> GridModes {
     let GridModel {
         columns,
         rows,
         products,
         modes,
+        standing,
     } = &mut found;
     products.grow(rows, columns, [&grid.full, &grid.half]);
     let size = columns.vectors.len().min(rows.vectors.len());
     let Some(model) = products.model(size) else {
-        return Ok((GridModes::default(), work));
+        return GridModes::default();
     };
-    let all = modes.iter().filter_map(|&(value, change)| {
-        let eigen = model.eigen(value)?;
-        let (left, right) = (rows.combined(&eigen.rows), columns.combined(&eigen.columns));
-        let product = |cell: usize| (left[cell] * right[cell]).norm();
-        Some(GridMode {
-            error: change + of_ends(grid, value.norm(), product, motion),
-            left: match value.im {
-                0.0 => real(&left),
-                _ => Vec::new(),
-            },
-            value,
-            // A real eigenvalue stays one.
-            change: match value.im {
-                0.0 => Complex::new(eigen.change.re, 0.0),
-                _ => eigen.change,
-            },
-        })
-    });
-    let mut modes: Vec<GridMode> = all.collect();
+    let all = modes
+        .iter()
+        .enumerate()
+        .filter_map(|(index, &(value, change))| {
+            let eigen = model.eigen(value)?;
+            let left = motion.centred(rows.combined(&eigen.rows));
+            let right = columns.combined(&eigen.columns);
+            let product = |cell: usize| (left[cell] * right[cell]).norm();
+            Some(GridMode {
+                stands: index < *standing,
+                error: change + of_ends(grid, value.norm(), product, motion),
+                value,
+                // A real eigenvalue stays one.
+                change: match value.im {
+                    0.0 => Complex::new(eigen.change.re, 0.0),
+                    _ => eigen.change,
+                },
+                columns: right,
+                rows: left,
+            })
+        });
+    let first_left = modes.get(most).or(modes.last());
+    let complete = first_left.map_or(0.0, |(value, _)| -value.re);
+    let carried: Vec<GridMode> = all.take(most).collect();
+    let mut modes: Vec<GridMode> = carried.iter().filter(|one| one.stands).cloned().collect();
     let discriminant = discriminant(&modes);
     modes.retain(|one| (one.change / one.value).norm() <= ARTEFACT);
-    let found = GridModes {
+    GridModes {
         modes,
         discriminant,
-    };
-    Ok((found, work))
+        carried,
+        complete,
+    }
 }
 
 /// The square of half of the difference of the two slowest modes, and what half of the dissipation changes of it, which

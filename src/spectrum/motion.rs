@@ -1,5 +1,7 @@
 //! How fast and how far states move in a steady state, and what the ends of the range do to an eigenvalue.
 
+use nalgebra::Complex;
+
 use super::Steady;
 use super::grid::Grid;
 use crate::space::CellSpace;
@@ -34,6 +36,8 @@ pub(super) struct Motion {
     /// Per axis and end that is no wall of the system, the square of the standard deviation over the distance from the
     /// mean to the end; zero at walls, and along series.
     ends: Vec<[f64; 2]>,
+    /// Shares of the cells in the steady state.
+    shares: Vec<f64>,
 }
 
 impl Motion {
@@ -72,7 +76,19 @@ impl Motion {
         (rate > 0.0).then(|| Self {
             rate,
             ends: ends.collect(),
+            shares: steady.masses.iter().map(|mass| mass / whole).collect(),
         })
+    }
+
+    /// A left vector of a mode without the constant that the steady state's has, of whatever size it is; the same where
+    /// the cells are others than those of the steady state.
+    pub(super) fn centred(&self, mut left: Vec<Complex<f64>>) -> Vec<Complex<f64>> {
+        if left.len() == self.shares.len() {
+            let pairs = left.iter().zip(&self.shares);
+            let mean: Complex<f64> = pairs.map(|(value, share)| value * share).sum();
+            left.iter_mut().for_each(|value| *value -= mean);
+        }
+        left
     }
 
     /// Cells at ends that are no walls, with what the product of a row and a column there counts in a number: a rate.

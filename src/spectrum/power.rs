@@ -90,8 +90,9 @@ pub fn power_spectra(
     settings: (&GeneratorOptions, &RateOptions),
     cancellation: &Cancellation,
 ) -> Result<Power, SpectrumError> {
-    let solve =
-        |grid: &Grid, motion: &Motion| on_grid(grid, question, motion, (settings.1, cancellation));
+    let solve = |grid: &Grid, motion: &Motion, _: Option<(&CellSpace, &Vec<Estimate>)>| {
+        on_grid(grid, question, motion, (settings.1, cancellation))
+    };
     let ((numbers, others), work) = on_grids(system, space, steady, settings.0, solve)?;
     let known = combined(&numbers, &others);
     let mut rest = known.as_slice();

@@ -60,17 +60,18 @@ pub fn slow_modes(
     settings: (&GeneratorOptions, &RateOptions),
     cancellation: &Cancellation,
 ) -> Result<SlowModes, SpectrumError> {
-    let solve = |grid: &Grid, motion: &Motion| {
+    let solve = |grid: &Grid, motion: &Motion, coarser: Option<(&CellSpace, &GridModes)>| {
         let options = (settings.1, cancellation);
         match wanted {
             0 => slowest(grid, motion, options),
-            _ => modes(grid, wanted, motion, options),
+            _ => modes(grid, wanted, motion, coarser, options),
         }
     };
     let ((found, fewer), work) = on_grids(system, space, steady, settings.0, solve)?;
     let of_grid = |grid: &GridModes| grid.discriminant.into_iter().collect::<Vec<_>>();
     let of_fewer: Vec<Vec<Estimate>> = fewer.iter().map(of_grid).collect();
     let discriminant = combined(&of_grid(&found), &of_fewer);
+    let complete = found.complete;
     let (found, fewer) = (found.modes, fewer.into_iter().map(|grid| grid.modes));
     let fewer: Vec<Vec<GridMode>> = fewer.collect();
     let mut errors: Vec<Complex<f64>> = found
@@ -93,7 +94,8 @@ pub fn slow_modes(
     in_order(&mut known, |(value, _)| *value);
     // The number of a mode says how many are slower: beyond one that is not known there is none.
     let is_known = |(value, error): &(Complex<f64>, Complex<f64>)| {
-        value.re < 0.0 && error.re <= UNKNOWN * value.norm()
+        let is_next = -value.re <= complete * (1.0 + UNKNOWN);
+        value.re < 0.0 && is_next && error.re <= UNKNOWN * value.norm()
     };
     let first_unknown = known.iter().position(|one| !is_known(one));
     known.truncate(first_unknown.unwrap_or(usize::MAX));
@@ -102,7 +104,7 @@ pub fn slow_modes(
         let slowest = known.first();
         slowest.is_some_and(|(value, _)| one.extrapolation() == *value)
     });
-    let left = first.map(|one| one.left.clone()).unwrap_or_default();
+    let left = first.map(GridMode::left).unwrap_or_default();
     let modes = known.into_iter().map(|(value, error)| SlowMode {
         decay: (-value.re, error.re),
         frequency: (value.im.abs(), if value.im == 0.0 { 0.0 } else { error.im }),

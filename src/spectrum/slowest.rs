@@ -116,13 +116,19 @@ fn mode(
     (row, column): (&[f64], &[f64]),
     motion: &Motion,
 ) -> Option<GridMode> {
+    let rows = motion.centred(row.iter().map(|&one| one.into()).collect());
     let overlap = dot(row, column);
-    let products = |cell: usize| (row[cell] * column[cell] / overlap).abs();
-    (step.value < 0.0 && step.change.abs() <= ARTEFACT * step.value.abs()).then(|| GridMode {
+    let product = |cell: usize| (rows[cell] * (column[cell] / overlap)).norm();
+    let at_ends = of_ends(grid, step.value.abs(), product, motion);
+    let fewer = TOLERANCE.1 * step.value.abs();
+    let is_mode = step.value < 0.0 && step.change.abs() <= ARTEFACT * step.value.abs();
+    is_mode.then(|| GridMode {
         value: Complex::new(step.value, 0.0),
         change: Complex::new(step.change, 0.0),
-        error: TOLERANCE.1 * step.value.abs() + of_ends(grid, step.value.abs(), products, motion),
-        left: row.to_vec(),
+        stands: true,
+        error: fewer + at_ends,
+        columns: column.iter().map(|&one| one.into()).collect(),
+        rows,
     })
 }
 

@@ -429,7 +429,9 @@ fn the_slowest_mode_alone_is_the_first_of_several() {
             (one.decay.0 - first.decay.0).abs() < 1e-4 * first.decay.0,
             "{one:?} {first:?}"
         );
-        assert!(one.decay.1 <= first.decay.1, "{one:?} {first:?}");
+        // Iterating alone leaves 1e-5 of the rate.
+        let allowed = first.decay.1 + 1e-5 * first.decay.0;
+        assert!(one.decay.1 <= allowed, "{one:?} {first:?}");
         // On three grids, at two shifts each.
         assert!(alone.work.factorisations <= 6 && alone.work.passes < several.work.passes);
     }

@@ -61,6 +61,14 @@ pub struct AbsorbingWork {
     pub passes: usize,
 }
 
+impl AbsorbingWork {
+    /// Takes up what was done besides.
+    pub(crate) fn add(&mut self, more: Self) {
+        self.factorisations += more.factorisations;
+        self.passes += more.passes;
+    }
+}
+
 /// A matrix that is being solved.
 pub(crate) struct Absorbing<'a> {
     matrix: &'a CsMat<f64>,

@@ -1,11 +1,12 @@
 //! Factors of one matrix between places, real or complex, and solves with them.
 
+use faer::Mat;
 use sprs::CsMat;
 
 use super::fronts::{Factor, allocate, factorise};
 use super::number::{Number, Wide};
 use super::symbolic::Symbolic;
-use super::triangular::{self, transposed::solve_transposed};
+use super::triangular::{self, block::solve_block, transposed::solve_transposed};
 use crate::cancellation::{Cancellation, Cancelled};
 
 /// Factors of a matrix over `scale`.
@@ -74,6 +75,26 @@ impl<T: Number> Scaled<T> {
         let mut ordered = in_order(symbolic, vector);
         solve_transposed(symbolic, &self.fronts, &mut ordered);
         self.put_back(symbolic, &ordered, vector);
+    }
+
+    /// Solves for each of many vectors, place by place, in the precision of the factors, which have no place held; or
+    /// with the transposed factors.
+    pub(super) fn solve_block(
+        &self,
+        symbolic: &Symbolic,
+        vectors: &mut [Vec<T::Wide>],
+        is_transposed: bool,
+    ) {
+        let order = &symbolic.order;
+        let number =
+            |place: usize, vector: usize| T::from_rate(vectors[vector][order[place] as usize]);
+        let mut block = Mat::from_fn(order.len(), vectors.len(), number);
+        solve_block(symbolic, &self.fronts, block.as_mut(), is_transposed);
+        for (vector, solved) in vectors.iter_mut().zip(block.col_iter()) {
+            for (&place, value) in order.iter().zip(solved.iter()) {
+                vector[place as usize] = value.wide() * self.scale.recip();
+            }
+        }
     }
 
     fn put_back(&self, symbolic: &Symbolic, ordered: &[T::Wide], vector: &mut [T::Wide]) {

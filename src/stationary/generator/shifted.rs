@@ -16,7 +16,7 @@ use crate::cancellation::Cancellation;
 use crate::space::CellSpace;
 
 /// Residual, relative to the right side, at which a solve is good enough.
-const TOLERANCE: f64 = 1e-9;
+const TOLERANCE: f64 = 1e-5;
 
 /// Passes of refinement at most.
 const PASSES: usize = 8;
@@ -88,6 +88,14 @@ impl<'a> Shifted<'a> {
         self.matrix.cols()
     }
 
+    /// About (Q - σ)⁻¹ of each of many vectors, of lengths about one, or of the transposed matrix: one pass in single
+    /// precision.
+    pub(crate) fn pass(&mut self, vectors: &mut [Vec<Complex<f64>>], is_transposed: bool) {
+        self.passes += vectors.len();
+        let pattern = &self.pattern.0;
+        self.factors.solve_block(pattern, vectors, is_transposed);
+    }
+
     /// (Q - σ)⁻¹ of a vector, or of the transposed matrix; as good as refinement makes it.
     pub(crate) fn solve(
         &mut self,
@@ -98,15 +106,12 @@ impl<'a> Shifted<'a> {
         let mut solved = vec![Complex::default(); right.len()];
         let mut residual = right.to_vec();
         for _ in 0..PASSES {
-            if is_transposed {
-                self.factors
-                    .solve_transposed(&self.pattern.0, &mut residual);
-            } else {
-                let mut both = [residual];
-                self.factors.solve(&self.pattern.0, None, &mut both);
-                [residual] = both;
-            }
-            self.passes += 1;
+            let scale = length(&residual);
+            residual.iter_mut().for_each(|one| *one /= scale);
+            let mut block = [residual];
+            self.pass(&mut block, is_transposed);
+            [residual] = block;
+            residual.iter_mut().for_each(|one| *one *= scale);
             solved
                 .iter_mut()
                 .zip(&residual)

@@ -3,6 +3,7 @@
 //! A subtree's unknowns are contiguous, so halves are solved in parallel. Sums always run in the same order, whether a
 //! vector is solved alone or with others: a pass is bound by reading the factors, which several vectors then share.
 
+pub(super) mod block;
 pub(super) mod transposed;
 
 use std::array::from_fn;

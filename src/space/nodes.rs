@@ -1,14 +1,14 @@
 //! Weights of interpolation from the nodes of one axis, and from products of them.
 
-use crate::space::{Axis, CellSpace};
+use super::{Axis, CellSpace};
 
 /// Nodes along an axis of the polynomial through a state, and fewer of them, by which that is judged.
-pub(super) const NODES: usize = 6;
-pub(super) const FEWER_NODES: usize = 4;
+pub(crate) const NODES: usize = 6;
+pub(crate) const FEWER_NODES: usize = 4;
 
 /// Weights of nodes along one axis about a coordinate.
 #[derive(Clone, Copy)]
-pub(super) struct AxisWeights {
+pub(crate) struct AxisWeights {
     first: usize,
     used: usize,
     weights: [f64; NODES],
@@ -16,13 +16,13 @@ pub(super) struct AxisWeights {
 
 impl AxisWeights {
     /// Nodes with their weights.
-    pub(super) fn each(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+    pub(crate) fn each(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let weights = self.weights[..self.used].iter().enumerate();
         weights.map(|(index, &weight)| (self.first + index, weight))
     }
 
     /// The same nodes, each of which counts one.
-    pub(super) fn counting(&self) -> Self {
+    pub(crate) fn counting(&self) -> Self {
         Self {
             weights: [1.0; NODES],
             ..*self
@@ -31,12 +31,12 @@ impl AxisWeights {
 }
 
 /// The weights of the nodes of an axis about a coordinate, those that lie evenly about it.
-pub(super) fn about(axis: &Axis, x: f64, nodes: usize) -> AxisWeights {
+pub(crate) fn about(axis: &Axis, x: f64, nodes: usize) -> AxisWeights {
     along(axis.count(), place_of(axis, x), 0, nodes)
 }
 
 /// The weights of the nodes of an axis about a cell coordinate, `shift` nodes above those that lie evenly about it.
-pub(super) fn along(count: usize, place: f64, shift: isize, nodes: usize) -> AxisWeights {
+pub(crate) fn along(count: usize, place: f64, shift: isize, nodes: usize) -> AxisWeights {
     let used = nodes.min(count);
     let nearest = (place - 0.5).floor() as isize - (used as isize / 2 - 1) + shift;
     let first = nearest.clamp(0, (count - used) as isize) as usize;
@@ -58,7 +58,7 @@ pub(super) fn along(count: usize, place: f64, shift: isize, nodes: usize) -> Axi
 }
 
 /// Visits the nodes of a product of weights: numbers of cells, and weights.
-pub(super) fn each(space: &CellSpace, along: &[AxisWeights], mut visit: impl FnMut(usize, f64)) {
+pub(crate) fn each(space: &CellSpace, along: &[AxisWeights], mut visit: impl FnMut(usize, f64)) {
     let shape = space.shape();
     let total: usize = along.iter().map(|one| one.used).product();
     for number in 0..total {
@@ -74,7 +74,7 @@ pub(super) fn each(space: &CellSpace, along: &[AxisWeights], mut visit: impl FnM
 }
 
 /// The place of a coordinate: of its node on an axis of modes.
-pub(super) fn place_of(axis: &Axis, x: f64) -> f64 {
+pub(crate) fn place_of(axis: &Axis, x: f64) -> f64 {
     if axis.is_modes() {
         let node = axis.nodes().partition_point(|&node| node < x);
         return node as f64 + 0.5;
