@@ -152,7 +152,7 @@ impl<'a> KrylovSpaces<'a> {
         let cells = self.solver.cells();
         let mut masses = vec![Complex::new(1.0 / cells as f64, 0.0); cells];
         for _ in 0..TO_STEADY {
-            masses = self.solver.solve(&masses, false);
+            masses = self.solver.solve(&[masses], false).swap_remove(0);
             let sum: Complex<f64> = masses.iter().sum();
             masses.iter_mut().for_each(|mass| *mass /= sum);
         }
@@ -176,11 +176,14 @@ impl<'a> KrylovSpaces<'a> {
         let [known_columns, known_rows] = &mut self.known;
         let column = without_steady(self.column.clone());
         self.column = apart(
-            without_steady(self.solver.solve(&column, false)),
+            without_steady(self.solver.solve(&[column], false).swap_remove(0)),
             known_columns,
         );
         let row = without_constant(self.row.clone());
-        self.row = apart(without_constant(self.solver.solve(&row, true)), known_rows);
+        self.row = apart(
+            without_constant(self.solver.solve(&[row], true).swap_remove(0)),
+            known_rows,
+        );
         for part in [|one: &Complex<f64>| one.re, |one: &Complex<f64>| one.im] {
             let of = |vector: &[Complex<f64>]| vector.iter().map(part).collect::<Vec<f64>>();
             // A direction that adds nothing to one side is left out of both.

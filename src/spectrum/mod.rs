@@ -80,11 +80,13 @@
 //! | how fast and how far states move | `motion.rs` |
 //! | eigenvalues with the errors of the cells | `slow.rs` |
 //! | a model of the resolvent that grows until spectra stand, on one grid | `resolvent.rs` |
+//! | its vectors at one frequency | `at_frequency.rs` |
 //! | the model as a function of frequency and lag | `transfer.rs` |
 //! | lines of a spectrum, and what changes its shape | `peak.rs` |
 //! | spectra with the errors of the cells | `power.rs` |
 //! | errors from half of the dissipation and fewer cells | `errors.rs` |
 
+mod at_frequency;
 mod carried;
 mod errors;
 mod grid;

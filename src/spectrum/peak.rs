@@ -24,8 +24,8 @@ pub(super) struct Peak {
 impl Peak {
     /// The highest maximum of an observable's power spectrum between zero and a frequency; `None` where there is none.
     pub(super) fn of(transfer: &Transfer, observable: usize, highest: f64) -> Option<Self> {
-        let slope = |frequency: f64| transfer.power(frequency, observable)[1];
-        let power = |frequency: f64| transfer.power(frequency, observable)[0];
+        let slope = |frequency: f64| transfer.power_and_slopes(frequency, observable)[1];
+        let power = |frequency: f64| transfer.power(frequency, observable);
         let at = maxima(&slope, &shape_frequencies(transfer, highest)).into_iter();
         let heights = at.map(|frequency| (frequency, power(frequency)));
         let (frequency, height) = heights.max_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -69,7 +69,7 @@ impl Peak {
 /// where the slope only falls, as that of a Lorentzian does.
 pub(super) fn steepest_rise(transfer: &Transfer, observable: usize, highest: f64) -> Option<f64> {
     let shape = |frequency: f64| {
-        let [power, slope, bend] = transfer.power(frequency, observable);
+        let [power, slope, bend] = transfer.power_and_slopes(frequency, observable);
         (slope / power, bend / power)
     };
     let rise = |frequency: f64| frequency * shape(frequency).0;

@@ -90,11 +90,13 @@ pub fn power_spectra(
     settings: (&GeneratorOptions, &RateOptions),
     cancellation: &Cancellation,
 ) -> Result<Power, SpectrumError> {
-    let solve = |grid: &Grid, motion: &Motion, _: Option<(&CellSpace, &Vec<Estimate>)>| {
-        on_grid(grid, question, motion, (settings.1, cancellation))
+    let solve = |grid: &Grid, motion: &Motion, coarser: Option<(&CellSpace, &OnGrid)>| {
+        let begun = coarser.map_or(&[][..], |(_, known)| &known.places);
+        on_grid(grid, (question, begun), motion, (settings.1, cancellation))
     };
-    let ((numbers, others), work) = on_grids(system, space, steady, settings.0, solve)?;
-    let known = combined(&numbers, &others);
+    let ((finest, others), work) = on_grids(system, space, steady, settings.0, solve)?;
+    let others: Vec<Vec<Estimate>> = others.into_iter().map(|one| one.numbers).collect();
+    let known = combined(&finest.numbers, &others);
     let mut rest = known.as_slice();
     let spectra = question.pairs.iter().map(|&(one, other)| {
         let mut take = |count: usize| {
@@ -173,20 +175,28 @@ fn features(known: &[Known]) -> Features {
     }
 }
 
-/// All numbers that are asked for on one grid, one after the other, and what they took.
+/// What a grid gives.
+struct OnGrid {
+    /// All numbers that are asked for, one after the other.
+    numbers: Vec<Estimate>,
+    /// Frequencies at which the model has shifts, and how many solves each has.
+    places: Vec<(f64, usize)>,
+}
+
+/// What one grid gives, and what it took; `begun` are the frequencies at which another grid has shifts, and its solves there.
 fn on_grid(
     grid: &Grid,
-    question: &PowerQuestion<'_>,
+    (question, begun): (&PowerQuestion<'_>, &[(f64, usize)]),
     motion: &Motion,
     solver: (&RateOptions, &Cancellation),
-) -> Worked<Vec<Estimate>> {
+) -> Worked<OnGrid> {
     let cells = grid.space.n_cells();
     let values = question.observables.iter().map(|observable| {
         let at = |cell| observable(&grid.space.centre(cell));
         (0..cells).map(at).collect()
     });
     let values: Vec<Vec<f64>> = values.collect();
-    let resolvent = Resolvent::new(grid, &values, question.frequencies, motion, solver)?;
+    let resolvent = Resolvent::new(grid, &values, (question.frequencies, begun), motion, solver)?;
     let resolvent = resolvent.ok_or(SpectrumError::Still)?;
     let [full, half, fewer] = &resolvent.transfers;
     let mut all = Vec::new();
@@ -201,7 +211,11 @@ fn on_grid(
             });
         }
     }
-    Ok((all, resolvent.work))
+    let found = OnGrid {
+        numbers: all,
+        places: resolvent.places,
+    };
+    Ok((found, resolvent.work))
 }
 
 /// The numbers of a pair by one model.
@@ -216,9 +230,9 @@ fn numbers(
     let mut all: Vec<f64>;
     if one == other {
         let highest = question.frequencies.last().copied().unwrap_or(0.0);
-        all = frequencies.map(|&at| transfer.power(at, one)[0]).collect();
+        all = frequencies.map(|&at| transfer.power(at, one)).collect();
         let peak = Peak::of(transfer, one, highest.max(motion.rate));
-        let [at_zero, _, bend] = transfer.power(0.0, one);
+        let [at_zero, _, bend] = transfer.power_and_slopes(0.0, one);
         let variance = transfer.covariance(one, one);
         all.extend([
             peak.map_or(f64::NAN, |peak| peak.frequency),
@@ -257,7 +271,7 @@ fn of_ends(
     let mut all = along.clone();
     if one == other {
         let [peak, width, time, curvature] = [0, 1, 2, 3].map(|place| numbers[along.len() + place]);
-        let power = |frequency: f64| resolvent.transfers[0].power(frequency, one)[0];
+        let power = |frequency: f64| resolvent.transfers[0].power(frequency, one);
         let share = |frequency: f64| at(frequency) / power(frequency);
         let shift = if peak.is_nan() { 0.0 } else { share(peak) };
         let extent = if width.is_nan() { peak } else { width };

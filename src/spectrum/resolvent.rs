@@ -1,24 +1,46 @@
 //! The resolvent (iω - Q)⁻¹ between observables on one grid: a model that grows until their spectra stand.
 
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix};
 
+use sprs::{CsMat, CsVecView};
+
+use super::at_frequency::AtFrequency;
 use super::grid::{Grid, ending};
-use super::model::{Basis, Products, ReducedModel};
+use super::model::{Basis, Products, ReducedModel, product};
 use super::motion::Motion;
 use super::real_shifts::balanced;
 use super::transfer::Transfer;
 use super::{SpectrumError, dot};
 use crate::cancellation::Cancellation;
-use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions, RateSolver};
+use crate::stationary::generator::{
+    AbsorbingSolver, AbsorbingWork, RateError, RateOptions, RateSolver, ShiftedPattern,
+};
 
 /// Vectors of either side for each observable by which a model grows before its spectra are looked at again.
 const GROWTH: usize = 6;
 
-/// Most vectors of either side at one shift, for each observable.
-const MOST: usize = 72;
+/// Most vectors of either side at one real shift, for each observable: at the first one, and at a slower one.
+const MOST: [usize; 2] = [24, 72];
 
-/// Most shifts.
-const SHIFTS: usize = 3;
+/// Looks at what stands, after each of which vectors are added where it does not, at most.
+const LOOKS: usize = 20;
+
+/// What does not stand at frequencies above this share of the rate of the motion has a shift there, on the imaginary
+/// axis; slower fluctuations have a real one.
+const OSCILLATES: f64 = 0.1;
+
+/// Vectors of either side at a frequency, for each observable: the real and imaginary parts of so many solves make as
+/// many as a model grows by.
+const SOLVES: usize = GROWTH / 2;
+
+/// Vectors of either side, for each observable, that need no solve: powers of the generator.
+const AT_ONCE: usize = 3;
+
+/// A frequency that differs from that of a shift by less than this share of it has no shift of its own, as long as that
+/// has no more solves than these; but by less than the other share it has none in any case.
+const NEAR: f64 = 0.4;
+const MOST_SOLVES: usize = 12;
+const SAME: f64 = 0.02;
 
 /// Relative change by more vectors at which a spectrum stands, and the same relative to its largest value.
 const TOLERANCE: (f64, f64) = (1e-5, 1e-8);
@@ -38,22 +60,24 @@ pub(super) struct Resolvent {
     pub(super) transfers: [Transfer; 3],
     /// What the ends of the range do to a number, at most: the vectors at the ends with what each place counts there.
     ends: Ends,
+    /// Frequencies with shifts of their own, and how many solves each has; none where real shifts were enough.
+    pub(super) places: Vec<(f64, usize)>,
     pub(super) work: AbsorbingWork,
 }
 
 /// Cells at the ends of the range, with the columns and the rows of the model there.
 struct Ends {
     weights: Vec<f64>,
-    columns: DMatrix<f64>,
-    rows: DMatrix<f64>,
+    columns: DMatrix<Complex<f64>>,
+    rows: DMatrix<Complex<f64>>,
 }
 
 impl Resolvent {
-    /// Of observables with these values in the cells.
+    /// Of observables with these values in the cells; `begun` are the frequencies at which another grid has shifts.
     pub(super) fn new(
         grid: &Grid,
         observables: &[Vec<f64>],
-        frequencies: &[f64],
+        (frequencies, begun): (&[f64], &[(f64, usize)]),
         motion: &Motion,
         (rates, cancellation): (&RateOptions, &Cancellation),
     ) -> Result<Option<Self>, SpectrumError> {
@@ -70,6 +94,7 @@ impl Resolvent {
             observables.iter().map(of).collect::<Vec<_>>()
         });
         let deviations: Vec<Vec<Vec<f64>>> = deviations.collect();
+        let pattern = ShiftedPattern::new(&grid.space, &grid.full);
         let mut growing = Growing {
             grid,
             observables,
@@ -78,15 +103,35 @@ impl Resolvent {
             columns: Basis::default(),
             rows: Basis::default(),
             products: Products::default(),
+            pattern: &pattern,
+            places: Vec::new(),
+            seen: None,
         };
+        growing.begin();
         let mut work = AbsorbingWork::default();
-        let mut shift = motion.rate;
-        for _ in 0..SHIFTS {
-            let next = growing.with_shift(shift, (rates, cancellation), &mut work)?;
-            match next {
-                Some(next) if next > SLOWEST * motion.rate => shift = next,
-                _ => break,
-            }
+        let options = (rates, cancellation);
+        for &(frequency, solves) in begun {
+            growing.at_frequency(frequency, solves, cancellation)?;
+        }
+        let mut next = match begun {
+            [] => growing.with_shift(motion.rate, MOST[0], options, &mut work)?,
+            _ => growing.looked_at(),
+        };
+        for _ in 1..LOOKS {
+            let Some(place) = next.filter(|&next| next > SLOWEST * motion.rate) else {
+                break;
+            };
+            let oscillates = place > OSCILLATES * motion.rate;
+            next = if oscillates && growing.has_room(rates) {
+                growing.at_frequency(place, SOLVES, cancellation)?;
+                growing.looked_at()
+            } else {
+                growing.with_shift(place, MOST[1], options, &mut work)?
+            };
+        }
+        for place in &growing.places {
+            work.factorisations += 1;
+            work.passes += place.passes();
         }
         Ok(growing.finish(motion, work))
     }
@@ -96,9 +141,7 @@ impl Resolvent {
     /// mode.
     pub(super) fn of_ends(&self, frequency: f64, pair: (usize, usize)) -> f64 {
         let [column, row] = self.transfers[0].responses(frequency, pair);
-        let complex = |matrix: &DMatrix<f64>| matrix.map(nalgebra::Complex::from);
-        let columns = complex(&self.ends.columns) * column;
-        let rows = complex(&self.ends.rows) * row;
+        let (columns, rows) = (&self.ends.columns * column, &self.ends.rows * row);
         let places = self
             .ends
             .weights
@@ -134,13 +177,79 @@ struct Growing<'a> {
     columns: Basis,
     rows: Basis,
     products: Products,
+    pattern: &'a ShiftedPattern,
+    /// Frequencies with shifts of their own.
+    places: Vec<AtFrequency<'a>>,
+    /// The vectors of the last look, their model, and that of fewer vectors with which it was compared.
+    seen: Option<(usize, [Transfer; 2])>,
 }
 
-impl Growing<'_> {
+impl<'a> Growing<'a> {
+    /// Begins with what fast fluctuations are made of: the deviations and observables, and their first changes in time.
+    fn begin(&mut self) {
+        for (values, deviation) in self.observables.iter().zip(&self.deviations[0]) {
+            let (mut column, mut row) = (deviation.clone(), centred(values));
+            for _ in 0..AT_ONCE {
+                self.columns.add(column.clone());
+                self.rows.add(row.clone());
+                column = balanced(product(&self.grid.full, &column));
+                row = centred(&transposed_product(&self.grid.full, &row));
+            }
+        }
+    }
+
+    /// Whether the factors at one more frequency are within the limit of memory.
+    fn has_room(&self, rates: &RateOptions) -> bool {
+        (self.places.len() + 1) as u64 * self.pattern.bytes() <= rates.memory_limit_bytes
+    }
+
+    /// Adds vectors at a shift on the imaginary axis: at the known one that is near, if there is one.
+    fn at_frequency(
+        &mut self,
+        frequency: f64,
+        solves: usize,
+        cancellation: &Cancellation,
+    ) -> Result<(), SpectrumError> {
+        let is_near = |known: &AtFrequency<'_>| {
+            let off = (known.frequency / frequency - 1.0).abs();
+            off < if known.solves < MOST_SOLVES {
+                NEAR
+            } else {
+                SAME
+            }
+        };
+        let index = match self.places.iter().position(is_near) {
+            Some(index) => index,
+            None => {
+                let on = (self.pattern, self.grid);
+                let sides = (&self.deviations[0][..], self.observables);
+                let place = AtFrequency::new(on, frequency, sides, cancellation)?;
+                self.places.push(place);
+                self.places.len() - 1
+            }
+        };
+        for _ in 0..solves {
+            for [column, row] in self.places[index].solve() {
+                self.columns.add(column);
+                self.rows.add(row);
+            }
+            cancellation.check().map_err(RateError::from)?;
+        }
+        Ok(())
+    }
+
+    /// Takes up the vectors that are new; the shift that would serve what does not stand.
+    fn looked_at(&mut self) -> Option<f64> {
+        let matrices = [&self.grid.full, &self.grid.half];
+        self.products.grow(&self.rows, &self.columns, matrices);
+        self.unsettled()
+    }
+
     /// Adds vectors at a shift until the spectra stand; the shift that would serve what does not, where they do not.
     fn with_shift(
         &mut self,
         shift: f64,
+        most: usize,
         (rates, cancellation): (&RateOptions, &Cancellation),
         work: &mut AbsorbingWork,
     ) -> Result<Option<f64>, SpectrumError> {
@@ -152,7 +261,7 @@ impl Growing<'_> {
             chains.push(Some((deviation.clone(), centred(values))));
         }
         let mut stands = None;
-        for step in 1..=MOST {
+        for step in 1..=most {
             for chain in &mut chains {
                 let Some((column, row)) = chain.take() else {
                     continue;
@@ -222,15 +331,19 @@ impl Growing<'_> {
     }
 
     /// Where the spectra do not stand yet: the largest frequency or the slowest rate that more vectors change.
-    fn unsettled(&self) -> Option<f64> {
-        let (Some(all), Some(fewer)) = (self.transfer(self.size()), self.transfer(self.smaller()))
-        else {
+    fn unsettled(&mut self) -> Option<f64> {
+        let size = self.size();
+        let fewer = match self.seen.take() {
+            Some((known, [last, _])) if known < size => Some(last),
+            _ => self.transfer(self.smaller()),
+        };
+        let (Some(all), Some(fewer)) = (self.transfer(size), fewer) else {
             return Some(0.0);
         };
         let mut worst: Option<(f64, f64)> = None;
         for observable in 0..self.observables.len() {
             let powers = self.looked_at.iter().map(|&frequency| {
-                let [one, other] = [&all, &fewer].map(|one| one.power(frequency, observable)[0]);
+                let [one, other] = [&all, &fewer].map(|one| one.power(frequency, observable));
                 (frequency, one.abs(), (one - other).abs())
             });
             let powers: Vec<(f64, f64, f64)> = powers.collect();
@@ -251,6 +364,7 @@ impl Growing<'_> {
             .poles()
             .map(|pole| pole.norm())
             .fold(f64::INFINITY, f64::min);
+        self.seen = Some((size, [all, fewer]));
         worst.map(|(frequency, _)| frequency.max(slowest))
     }
 
@@ -258,19 +372,29 @@ impl Growing<'_> {
         let (model, [rows, columns, other_columns]) = self.model(self.size())?;
         let full = model.transfer(&model.first, &rows, &columns)?;
         let half = model.transfer(&model.second, &rows, &other_columns)?;
-        let fewer = self.transfer(self.smaller())?;
+        let (_, [_, fewer]) = self.seen?;
         let (places, weights) = motion.at_ends(&self.grid.space);
-        let [at_columns, at_rows] = model.at_places(&places, (&self.rows, &self.columns));
+        let [columns, rows] = model.at_places(&places, (&self.rows, &self.columns));
+        let [columns, rows] = full.at_places(&columns, &rows);
         Some(Resolvent {
             transfers: [full, half, fewer],
+            places: (self.places.iter().map(|one| (one.frequency, one.solves))).collect(),
             ends: Ends {
                 weights,
-                columns: at_columns,
-                rows: at_rows,
+                columns,
+                rows,
             },
             work,
         })
     }
+}
+
+/// Aᵀ x.
+fn transposed_product(matrix: &CsMat<f64>, vector: &[f64]) -> Vec<f64> {
+    let columns = matrix.outer_iterator();
+    let sum =
+        |column: CsVecView<'_, f64>| column.iter().map(|(row, rate)| rate * vector[row]).sum();
+    columns.map(sum).collect()
 }
 
 /// Less its mean over the cells: constants do nothing where columns sum to zero.

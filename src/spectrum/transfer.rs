@@ -52,9 +52,9 @@ impl Transfer {
         for row in (0..x.len()).rev() {
             x[row] /= shift - self.triangle[(row, row)];
             let value = x[row];
-            for above in 0..row {
-                x[above] += self.triangle[(above, row)] * value;
-            }
+            let column = self.triangle.column(row);
+            let above = x.iter_mut().zip(column.iter()).take(row);
+            above.for_each(|(x, rate)| *x += rate * value);
         }
         x
     }
@@ -67,27 +67,49 @@ impl Transfer {
     ) -> DVector<Complex<f64>> {
         let shift = Complex::new(0.0, frequency);
         for row in 0..y.len() {
-            for above in 0..row {
-                let known = y[above];
-                y[row] += self.triangle[(above, row)] * known;
-            }
+            let column = self.triangle.column(row);
+            let above = y.iter().zip(column.iter()).take(row);
+            let sum: Complex<f64> = above.map(|(known, rate)| known * rate).sum();
+            y[row] += sum;
             y[row] /= shift - self.triangle[(row, row)];
         }
         y
     }
 
-    /// Weights of the model's states in (iω - A)⁻¹ b of a deviation, and in c (iω - A)⁻¹ of an observable.
+    /// Vectors at some places, one a column, times weights of the model's states as [`Transfer::responses`] gives them;
+    /// for columns, and for rows.
+    pub(super) fn at_places(
+        &self,
+        columns: &DMatrix<f64>,
+        rows: &DMatrix<f64>,
+    ) -> [DMatrix<Complex<f64>>; 2] {
+        let complex = |matrix: &DMatrix<f64>| matrix.map(Complex::from);
+        let conjugate = self.unitary.map(|value| value.conj());
+        [complex(columns) * &self.unitary, complex(rows) * conjugate]
+    }
+
+    /// Weights of the states of the triangular form in (iω - A)⁻¹ b of a deviation, and in c (iω - A)⁻¹ of an observable.
     pub(super) fn responses(
         &self,
         frequency: f64,
         (observable, deviation): (usize, usize),
     ) -> [DVector<Complex<f64>>; 2] {
-        let column = self.resolved(frequency, self.columns.column(deviation).into_owned());
+        let column = self.columns.column(deviation).into_owned();
         let row = self.rows.row(observable).transpose();
         [
-            &self.unitary * column,
-            self.unitary.map(|value| value.conj()) * self.resolved_transposed(frequency, row),
+            self.resolved(frequency, column),
+            self.resolved_transposed(frequency, row),
         ]
+    }
+
+    /// H(ω) of an observable's row with a deviation's column.
+    fn half_sided_alone(
+        &self,
+        frequency: f64,
+        (observable, deviation): (usize, usize),
+    ) -> Complex<f64> {
+        let x = self.resolved(frequency, self.columns.column(deviation).into_owned());
+        (self.rows.row(observable) * x)[(0, 0)]
     }
 
     /// H(ω) and its first two derivatives by the frequency, of an observable's row with a deviation's column.
@@ -112,15 +134,21 @@ impl Transfer {
     /// The two-sided cross spectrum ∫ C(τ) e^{-iωτ} dτ with C(τ) = E[g(t + τ) h(t)] less the means: real where both
     /// are the same.
     pub(super) fn cross(&self, frequency: f64, (one, other): (usize, usize)) -> Complex<f64> {
-        let half = |pair| self.half_sided(frequency, pair)[0];
+        let half = |pair| self.half_sided_alone(frequency, pair);
         if one == other {
             return Complex::new(2.0 * half((one, one)).re, 0.0);
         }
         half((one, other)) + half((other, one)).conj()
     }
 
+    /// The two-sided power spectrum of an observable.
+    pub(super) fn power(&self, frequency: f64, observable: usize) -> f64 {
+        let pair = (observable, observable);
+        2.0 * self.half_sided_alone(frequency, pair).re
+    }
+
     /// The two-sided power spectrum of an observable, and its first two derivatives by the frequency.
-    pub(super) fn power(&self, frequency: f64, observable: usize) -> [f64; 3] {
+    pub(super) fn power_and_slopes(&self, frequency: f64, observable: usize) -> [f64; 3] {
         self.half_sided(frequency, (observable, observable))
             .map(|value| 2.0 * value.re)
     }
@@ -210,7 +238,7 @@ mod tests {
     fn an_oscillator_has_its_spectra() {
         let transfer = oscillator();
         for frequency in [0.0, 0.3, 0.99, 1.0, 2.5] {
-            let [power, slope, curvature] = transfer.power(frequency, 0);
+            let [power, slope, curvature] = transfer.power_and_slopes(frequency, 0);
             // Differences of second order, whose errors are h² times derivatives of some thousands.
             let beside = |h: f64| [frequency - h, frequency + h].map(exact);
             let [below, above] = beside(1e-5);
@@ -241,6 +269,10 @@ mod tests {
     fn both_sides_give_the_same() {
         let transfer = oscillator();
         let [column, row] = transfer.responses(0.7, (0, 1));
+        let [column, row] = [
+            &transfer.unitary * column,
+            transfer.unitary.map(|value| value.conj()) * row,
+        ];
         let shift = Complex::new(0.0, 0.7);
         let size = column.len();
         let generator = &transfer.unitary * &transfer.triangle * transfer.unitary.adjoint();

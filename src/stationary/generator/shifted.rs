@@ -96,30 +96,31 @@ impl<'a> Shifted<'a> {
         self.factors.solve_block(pattern, vectors, is_transposed);
     }
 
-    /// (Q - σ)⁻¹ of a vector, or of the transposed matrix; as good as refinement makes it.
+    /// (Q - σ)⁻¹ of each of several vectors, or of the transposed matrix; as good as refinement makes it.
     pub(crate) fn solve(
         &mut self,
-        right: &[Complex<f64>],
+        right: &[Vec<Complex<f64>>],
         is_transposed: bool,
-    ) -> Vec<Complex<f64>> {
-        let size = length(right);
-        let mut solved = vec![Complex::default(); right.len()];
-        let mut residual = right.to_vec();
+    ) -> Vec<Vec<Complex<f64>>> {
+        let sizes: Vec<f64> = right.iter().map(|one| length(one)).collect();
+        let mut solved = vec![vec![Complex::default(); self.cells()]; right.len()];
+        let mut residuals = right.to_vec();
         for _ in 0..PASSES {
-            let scale = length(&residual);
-            residual.iter_mut().for_each(|one| *one /= scale);
-            let mut block = [residual];
-            self.pass(&mut block, is_transposed);
-            [residual] = block;
-            residual.iter_mut().for_each(|one| *one *= scale);
-            solved
-                .iter_mut()
-                .zip(&residual)
-                .for_each(|(x, change)| *x += change);
-            residual = self.residual(right, &solved, is_transposed);
+            let scales: Vec<f64> = residuals.iter().map(|one| length(one)).collect();
+            for (residual, scale) in residuals.iter_mut().zip(&scales) {
+                residual.iter_mut().for_each(|one| *one /= scale);
+            }
+            self.pass(&mut residuals, is_transposed);
+            for ((solved, change), scale) in solved.iter_mut().zip(&residuals).zip(&scales) {
+                let pairs = solved.iter_mut().zip(change);
+                pairs.for_each(|(x, change)| *x += change * scale);
+            }
+            for ((residual, right), solved) in residuals.iter_mut().zip(right).zip(&solved) {
+                *residual = self.residual(right, solved, is_transposed);
+            }
             // Also where it is no number.
-            let is_large = length(&residual) > TOLERANCE * size;
-            if !is_large {
+            let mut sizes = residuals.iter().zip(&sizes);
+            if !sizes.any(|(left, size)| length(left) > TOLERANCE * size) {
                 break;
             }
         }
