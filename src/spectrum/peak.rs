@@ -8,8 +8,12 @@ const LOOKED_AT: usize = 200;
 /// Distances from the frequency of a pole at which maxima are looked for too, in its decay rates.
 const BESIDE_POLE: [f64; 5] = [-2.0, -0.7, 0.0, 0.7, 2.0];
 
-/// Halvings of a bracket.
+/// Poles with a decay rate above so many distances of these frequencies make no line that is missed between them.
+const WIDE: f64 = 2.0;
+
+/// Halvings of a bracket, at most, and its width, relative to its place, at which it is left.
 const HALVINGS: usize = 60;
+const WIDTH: f64 = 1e-13;
 
 /// A maximum of a power spectrum.
 #[derive(Debug, Clone, Copy)]
@@ -23,10 +27,16 @@ pub(super) struct Peak {
 
 impl Peak {
     /// The highest maximum of an observable's power spectrum between zero and a frequency; `None` where there is none.
-    pub(super) fn of(transfer: &Transfer, observable: usize, highest: f64) -> Option<Self> {
-        let slope = |frequency: f64| transfer.power_and_slopes(frequency, observable)[1];
+    pub(super) fn of(shape: &Shape<'_>) -> Option<Self> {
+        let Shape {
+            transfer,
+            observable,
+            highest,
+            ..
+        } = *shape;
+        let slope = |[_, slope, _]: [f64; 3], _: f64| slope;
         let power = |frequency: f64| transfer.power(frequency, observable);
-        let at = maxima(&slope, &shape_frequencies(transfer, highest)).into_iter();
+        let at = shape.maxima(&slope).into_iter();
         let heights = at.map(|frequency| (frequency, power(frequency)));
         let (frequency, height) = heights.max_by(|a, b| a.1.total_cmp(&b.1))?;
         let peak = Self {
@@ -67,48 +77,80 @@ impl Peak {
 /// The largest local maximum above zero of d ln S / d ln ω, how steeply an observable's power spectrum rises: above
 /// zero where the spectrum has a maximum at a frequency above zero, and zero where one is born beside a minimum. `None`
 /// where the slope only falls, as that of a Lorentzian does.
-pub(super) fn steepest_rise(transfer: &Transfer, observable: usize, highest: f64) -> Option<f64> {
-    let shape = |frequency: f64| {
-        let [power, slope, bend] = transfer.power_and_slopes(frequency, observable);
-        (slope / power, bend / power)
-    };
-    let rise = |frequency: f64| frequency * shape(frequency).0;
-    let change = |frequency: f64| {
-        let (slope, bend) = shape(frequency);
+pub(super) fn steepest_rise(shape: &Shape<'_>) -> Option<f64> {
+    let change = |[power, slope, bend]: [f64; 3], frequency: f64| {
+        let (slope, bend) = (slope / power, bend / power);
         slope + frequency * (bend - slope * slope)
     };
-    let at = maxima(&change, &shape_frequencies(transfer, highest)).into_iter();
+    let at = shape.maxima(&change).into_iter();
+    let rise = |frequency: f64| {
+        let [power, slope, _] = shape.at(frequency);
+        frequency * slope / power
+    };
     at.map(rise).max_by(f64::total_cmp)
 }
 
-/// Frequencies at which shapes of spectra are looked at, ascending: even ones, and some beside each pole.
-fn shape_frequencies(transfer: &Transfer, highest: f64) -> Vec<f64> {
-    let step = highest / LOOKED_AT as f64;
-    let mut places: Vec<f64> = (0..=LOOKED_AT)
-        .map(|number| (number as f64 + 0.5) * step)
-        .collect();
-    let poles = transfer.poles();
-    for pole in poles.filter(|pole| pole.im > 0.0 && pole.im <= highest) {
-        places.extend(BESIDE_POLE.map(|times| pole.im + times * pole.re.abs()));
-    }
-    places.retain(|&place| place > 0.0 && place <= highest);
-    places.sort_by(f64::total_cmp);
-    places
+/// The power spectrum of an observable with its slopes, at frequencies at which its shape is looked at.
+pub(super) struct Shape<'a> {
+    transfer: &'a Transfer,
+    observable: usize,
+    highest: f64,
+    /// Ascending: even ones, and some beside each pole that makes a narrow line.
+    places: Vec<f64>,
+    values: Vec<[f64; 3]>,
 }
 
-/// Where a function has its maxima, by its derivative, between neighbouring places.
-fn maxima(derivative: &dyn Fn(f64) -> f64, places: &[f64]) -> Vec<f64> {
-    let slopes: Vec<f64> = places.iter().map(|&place| derivative(place)).collect();
-    let is_top = |number: &usize| slopes[number - 1] > 0.0 && slopes[*number] <= 0.0;
-    let tops = (1..places.len()).filter(is_top);
-    tops.map(|number| bisection(derivative, places[number - 1], places[number]))
-        .collect()
+impl<'a> Shape<'a> {
+    /// Between zero and a frequency.
+    pub(super) fn new(transfer: &'a Transfer, observable: usize, highest: f64) -> Self {
+        let step = highest / LOOKED_AT as f64;
+        let even = (0..=LOOKED_AT).map(|number| (number as f64 + 0.5) * step);
+        let mut places: Vec<f64> = even.collect();
+        let poles = transfer
+            .poles()
+            .filter(|pole| pole.im > 0.0 && pole.im <= highest);
+        for pole in poles.filter(|pole| pole.re.abs() <= WIDE * step) {
+            places.extend(BESIDE_POLE.map(|times| pole.im + times * pole.re.abs()));
+        }
+        places.retain(|&place| place > 0.0 && place <= highest);
+        places.sort_by(f64::total_cmp);
+        let at = |&place: &f64| transfer.power_and_slopes(place, observable);
+        Self {
+            values: places.iter().map(at).collect(),
+            transfer,
+            observable,
+            highest,
+            places,
+        }
+    }
+
+    fn at(&self, frequency: f64) -> [f64; 3] {
+        self.transfer.power_and_slopes(frequency, self.observable)
+    }
+
+    /// Where a function of the spectrum has its maxima, by its derivative, a function of the spectrum, its two slopes
+    /// and the frequency.
+    fn maxima(&self, derivative: &dyn Fn([f64; 3], f64) -> f64) -> Vec<f64> {
+        let known = self.values.iter().zip(&self.places);
+        let slopes: Vec<f64> = known
+            .map(|(&value, &place)| derivative(value, place))
+            .collect();
+        let is_top = |number: &usize| slopes[number - 1] > 0.0 && slopes[*number] <= 0.0;
+        let tops = (1..slopes.len()).filter(is_top);
+        let slope = |place: f64| derivative(self.at(place), place);
+        let between =
+            |number: usize| bisection(&slope, self.places[number - 1], self.places[number]);
+        tops.map(between).collect()
+    }
 }
 
 /// Where a function that is positive at `a` and not at `b` changes its sign.
 fn bisection(function: &dyn Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
     for _ in 0..HALVINGS {
         let middle = 0.5 * (a + b);
+        if (b - a).abs() <= WIDTH * middle.abs() {
+            break;
+        }
         if function(middle) > 0.0 {
             a = middle
         } else {

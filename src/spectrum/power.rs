@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::errors::{Estimate, Worked, combined, on_grids, smoothed};
 use super::grid::Grid;
 use super::motion::Motion;
-use super::peak::{Peak, steepest_rise};
+use super::peak::{Peak, Shape, steepest_rise};
 use super::resolvent::Resolvent;
 use super::transfer::Transfer;
 use super::{SpectrumError, Steady};
@@ -231,7 +231,8 @@ fn numbers(
     if one == other {
         let highest = question.frequencies.last().copied().unwrap_or(0.0);
         all = frequencies.map(|&at| transfer.power(at, one)).collect();
-        let peak = Peak::of(transfer, one, highest.max(motion.rate));
+        let shape = Shape::new(transfer, one, highest.max(motion.rate));
+        let peak = Peak::of(&shape);
         let [at_zero, _, bend] = transfer.power_and_slopes(0.0, one);
         let variance = transfer.covariance(one, one);
         all.extend([
@@ -239,7 +240,7 @@ fn numbers(
             peak.and_then(|peak| peak.width).unwrap_or(f64::NAN),
             0.5 * at_zero / variance,
             bend / at_zero,
-            steepest_rise(transfer, one, highest.max(motion.rate)).unwrap_or(f64::NAN),
+            steepest_rise(&shape).unwrap_or(f64::NAN),
         ]);
     } else {
         let cross = frequencies.map(|&at| transfer.cross(at, (one, other)));
