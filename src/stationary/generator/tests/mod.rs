@@ -4,6 +4,7 @@ mod along;
 mod cancelled;
 mod exact;
 mod generators;
+mod shifted;
 mod warm;
 
 use sprs::CsMat;
