@@ -9,8 +9,8 @@ use nalgebra::Complex;
 
 use super::SpectrumError;
 use super::grid::Grid;
+use super::grid_mode::GridMode;
 use super::model::{GridModel, ReducedModel, in_order, stands};
-use super::modes::GridMode;
 use super::real_shifts::balanced;
 use crate::cancellation::Cancellation;
 use crate::space::nodes::{self, AxisWeights};

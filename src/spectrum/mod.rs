@@ -74,7 +74,7 @@
 //! | --- | --- |
 //! | the generator between walls on the cells of a sweep, or on fewer | `grid.rs` |
 //! | the model of a few dozen states | `model.rs` |
-//! | eigenvalues, and their errors on one grid | `modes.rs` |
+//! | eigenvalues, and their errors on one grid | `grid_mode.rs`, `modes.rs` |
 //! | the model that has them, at real shifts; at the harmonics of a motion | `real_shifts.rs`, `harmonic_shifts.rs` |
 //! | modes of a grid from those of a coarser one | `carried.rs` |
 //! | how fast and how far states move | `motion.rs` |
@@ -90,6 +90,7 @@ mod at_frequency;
 mod carried;
 mod errors;
 mod grid;
+mod grid_mode;
 mod harmonic_shifts;
 mod kramers;
 mod model;

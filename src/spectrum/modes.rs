@@ -8,6 +8,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::carried::carried;
 use super::errors::{Estimate, Worked};
 use super::grid::Grid;
+use super::grid_mode::GridMode;
 use super::harmonic_shifts::near_harmonics;
 use super::model::GridModel;
 use super::motion::{Motion, of_ends};
@@ -28,38 +29,6 @@ pub(super) const ARTEFACT: f64 = 0.3;
 
 /// Seed of the vectors that begin.
 pub(super) const SEED: u64 = 0x5eed;
-
-/// An eigenvalue on one grid.
-#[derive(Clone)]
-pub(super) struct GridMode {
-    /// By the scheme.
-    pub(super) value: Complex<f64>,
-    /// What half of the dissipation changes.
-    pub(super) change: Complex<f64>,
-    /// Whether it stands: of others it is known that they are there.
-    pub(super) stands: bool,
-    /// What fewer vectors change, and at most what the ends of the range do.
-    pub(super) error: f64,
-    /// Its vectors of either side, the left one known but for a constant, both but for a factor.
-    pub(super) columns: Vec<Complex<f64>>,
-    pub(super) rows: Vec<Complex<f64>>,
-}
-
-impl GridMode {
-    /// Extrapolated to no dissipation.
-    pub(super) fn extrapolation(&self) -> Complex<f64> {
-        self.value + self.change * 2.0
-    }
-
-    /// The left vector; empty where the mode oscillates.
-    pub(super) fn left(&self) -> Vec<f64> {
-        if self.value.im == 0.0 {
-            real(&self.rows)
-        } else {
-            Vec::new()
-        }
-    }
-}
 
 /// The slowest modes of a grid.
 #[derive(Default)]
@@ -185,13 +154,4 @@ fn discriminant(slowest: &[GridMode]) -> Option<Estimate> {
         change: half * (first.change.re - second.change.re),
         error: half.abs() * (first.error + second.error),
     })
-}
-
-/// The real parts of a vector that is real but for a complex factor.
-fn real(vector: &[Complex<f64>]) -> Vec<f64> {
-    let largest = vector.iter().max_by(|a, b| a.norm().total_cmp(&b.norm()));
-    let Some(turn) = largest.map(|one| one.conj() / one.norm().max(f64::MIN_POSITIVE)) else {
-        return Vec::new();
-    };
-    vector.iter().map(|one| (one * turn).re).collect()
 }

@@ -183,7 +183,8 @@ struct OnGrid {
     places: Vec<(f64, usize)>,
 }
 
-/// What one grid gives, and what it took; `begun` are the frequencies at which another grid has shifts, and its solves there.
+/// What one grid gives, and what it took; `begun` are the frequencies at which another grid has shifts, and its solves
+/// there.
 fn on_grid(
     grid: &Grid,
     (question, begun): (&PowerQuestion<'_>, &[(f64, usize)]),

@@ -6,8 +6,9 @@ use nalgebra::Complex;
 
 use super::errors::{DAMPED, Estimate, FEWER, combined, on_grids};
 use super::grid::Grid;
+use super::grid_mode::GridMode;
 use super::model::in_order;
-use super::modes::{GridMode, GridModes, modes};
+use super::modes::{GridModes, modes};
 use super::motion::Motion;
 use super::slowest::slowest;
 use super::{SpectrumError, Steady};

@@ -88,7 +88,8 @@ impl Transfer {
         [complex(columns) * &self.unitary, complex(rows) * conjugate]
     }
 
-    /// Weights of the states of the triangular form in (iω - A)⁻¹ b of a deviation, and in c (iω - A)⁻¹ of an observable.
+    /// Weights of the states of the triangular form in (iω - A)⁻¹ b of a deviation, and in c (iω - A)⁻¹ of an
+    /// observable.
     pub(super) fn responses(
         &self,
         frequency: f64,

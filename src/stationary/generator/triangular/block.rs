@@ -1,7 +1,7 @@
 //! Substitution for a block of vectors at once, in the precision of the factors.
 //!
-//! Products of dense blocks read the factors once for all vectors, and are several times as fast a vector as substitution
-//! for one in double precision. What single precision leaves is for the caller to correct.
+//! Products of dense blocks read the factors once for all vectors, and a vector takes a fraction of the time of
+//! substitution in double precision. What single precision leaves is for the caller to correct.
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::{
