@@ -29,13 +29,15 @@ const BESIDE: usize = 4;
 pub(super) type Worked<T> = Result<(T, AbsorbingWork), SpectrumError>;
 
 /// Solves on each of the [`FEWER`] cells, the fewest first, and on those of a sweep, each time with the grid before and
-/// what it gave; what all of them took.
+/// what it gave, which finer cells begin with; fewer cells that told nothing begin with what the finest gave. What all
+/// of them took besides.
 pub(super) fn on_grids<T>(
     system: &Arc<dyn System>,
     space: &CellSpace,
     steady: Steady<'_>,
     options: &GeneratorOptions,
     mut solve: impl FnMut(&Grid, &Motion, Option<(&CellSpace, &T)>) -> Worked<T>,
+    tells: impl Fn(&T) -> bool,
 ) -> Worked<(T, Vec<T>)> {
     let grid = |factor| Grid::new(system, space, factor, options);
     let finest = grid(1.0)?;
@@ -55,6 +57,14 @@ pub(super) fn on_grids<T>(
     work.add(more);
     others.extend(before.map(|one| one.1));
     others.reverse();
+    for (other, (factor, _)) in others.iter_mut().zip(FEWER) {
+        if tells(&found) && !tells(other) {
+            let known = Some((&finest.space, &found));
+            let (again, more) = solve(&grid(factor)?, &motion, known)?;
+            work.add(more);
+            *other = again;
+        }
+    }
     Ok(((found, others), work))
 }
 

@@ -94,7 +94,7 @@ pub fn power_spectra(
         let begun = coarser.map_or(&[][..], |(_, known)| &known.places);
         on_grid(grid, (question, begun), motion, (settings.1, cancellation))
     };
-    let ((finest, others), work) = on_grids(system, space, steady, settings.0, solve)?;
+    let ((finest, others), work) = on_grids(system, space, steady, settings.0, solve, |_| true)?;
     let others: Vec<Vec<Estimate>> = others.into_iter().map(|one| one.numbers).collect();
     let known = combined(&finest.numbers, &others);
     let mut rest = known.as_slice();

@@ -20,7 +20,7 @@ use crate::stationary::generator::{
 const GROWTH: usize = 6;
 
 /// Most vectors of either side at one real shift, for each observable: at the first one, and at a slower one.
-const MOST: [usize; 2] = [24, 72];
+const MOST: [usize; 2] = [48, 72];
 
 /// Looks at what stands, after each of which vectors are added where it does not, at most.
 const LOOKS: usize = 20;

@@ -68,7 +68,8 @@ pub fn slow_modes(
             _ => modes(grid, wanted, motion, coarser, options),
         }
     };
-    let ((found, fewer), work) = on_grids(system, space, steady, settings.0, solve)?;
+    let tells = |grid: &GridModes| wanted == 0 || !grid.modes.is_empty();
+    let ((found, fewer), work) = on_grids(system, space, steady, settings.0, solve, tells)?;
     let of_grid = |grid: &GridModes| grid.discriminant.into_iter().collect::<Vec<_>>();
     let of_fewer: Vec<Vec<Estimate>> = fewer.iter().map(of_grid).collect();
     let discriminant = combined(&of_grid(&found), &of_fewer);
