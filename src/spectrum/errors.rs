@@ -28,35 +28,31 @@ const BESIDE: usize = 4;
 /// What a grid gives, and what it took.
 pub(super) type Worked<T> = Result<(T, AbsorbingWork), SpectrumError>;
 
-/// Solves on each of the [`FEWER`] cells, the fewest first, and on those of a sweep, each time with the grid before and
-/// what it gave, which finer cells begin with; fewer cells that told nothing begin with what the finest gave. What all
-/// of them took besides.
-pub(super) fn on_grids<T>(
+/// Solves on the fewest cells first, and then on others and on those of a sweep side by side, which begin with what the
+/// fewest gave; fewer cells that told nothing begin with what the finest gave. What all of them took besides.
+pub(super) fn on_grids<T: Send + Sync>(
     system: &Arc<dyn System>,
     space: &CellSpace,
     steady: Steady<'_>,
     options: &GeneratorOptions,
-    mut solve: impl FnMut(&Grid, &Motion, Option<(&CellSpace, &T)>) -> Worked<T>,
+    solve: impl Fn(&Grid, &Motion, Option<(&CellSpace, &T)>) -> Worked<T> + Sync,
     tells: impl Fn(&T) -> bool,
 ) -> Worked<(T, Vec<T>)> {
     let grid = |factor| Grid::new(system, space, factor, options);
     let finest = grid(1.0)?;
     let motion = Motion::new(&finest, system.as_ref(), steady).ok_or(SpectrumError::Still)?;
-    let mut work = AbsorbingWork::default();
-    let mut before: Option<(CellSpace, T)> = None;
-    let mut others = Vec::new();
-    for (factor, _) in FEWER.into_iter().rev() {
-        let coarse = grid(factor)?;
-        let known = before.as_ref().map(|(space, found)| (space, found));
-        let (found, more) = solve(&coarse, &motion, known)?;
-        work.add(more);
-        others.extend(before.replace((coarse.space, found)).map(|one| one.1));
-    }
-    let known = before.as_ref().map(|(space, found)| (space, found));
-    let (found, more) = solve(&finest, &motion, known)?;
-    work.add(more);
-    others.extend(before.map(|one| one.1));
-    others.reverse();
+    let [more, fewest] = FEWER.map(|(factor, _)| factor);
+    let (fewest, more) = (grid(fewest)?, grid(more)?);
+    let (of_fewest, mut work) = solve(&fewest, &motion, None)?;
+    let known = Some((&fewest.space, &of_fewest));
+    let (on_finest, on_more) = rayon::join(
+        || solve(&finest, &motion, known),
+        || solve(&more, &motion, known),
+    );
+    let ((found, of_finest), (of_more, of_others)) = (on_finest?, on_more?);
+    work.add(of_finest);
+    work.add(of_others);
+    let mut others = vec![of_more, of_fewest];
     for (other, (factor, _)) in others.iter_mut().zip(FEWER) {
         if tells(&found) && !tells(other) {
             let known = Some((&finest.space, &found));

@@ -10,7 +10,7 @@ use super::errors::{Estimate, Worked};
 use super::grid::Grid;
 use super::grid_mode::GridMode;
 use super::harmonic_shifts::near_harmonics;
-use super::model::GridModel;
+use super::model::{GridModel, in_order};
 use super::motion::{Motion, of_ends};
 use super::real_shifts::at_real_shifts;
 use crate::cancellation::Cancellation;
@@ -20,9 +20,8 @@ use crate::stationary::generator::{AbsorbingWork, RateOptions};
 /// Modes beyond those that are wanted, in place of some that are none of the equation.
 const SPARE: usize = 1;
 
-/// Modes that are carried to finer cells beyond those, from the fewest cells and from others: there the order of decay
-/// rates may be another.
-const BESIDE: [usize; 2] = [3, 2];
+/// Modes that are carried to finer cells beyond those: there the order of decay rates may be another.
+const BESIDE: usize = 3;
 
 /// Relative change by half of the dissipation from which a number is none of the equation.
 pub(super) const ARTEFACT: f64 = 0.3;
@@ -69,7 +68,7 @@ pub(super) fn modes(
         let begin = (coarse, known.carried.as_slice());
         let found = carried(grid, begin, wanted + SPARE, options, &mut work)?;
         if let Some(found) = found {
-            let found = of_model(grid, found, wanted + SPARE + BESIDE[1], motion);
+            let found = of_model(grid, found, wanted + SPARE + BESIDE, motion);
             let complete = known.complete;
             return Ok((GridModes { complete, ..found }, work));
         }
@@ -82,7 +81,7 @@ pub(super) fn modes(
         found = near_harmonics(grid, enough, &mut numbers, options, &mut work)?;
     }
     found.standing = found.modes.len();
-    let most = wanted + SPARE + BESIDE[0];
+    let most = wanted + SPARE + BESIDE;
     Ok((of_model(grid, found, most, motion), work))
 }
 
@@ -121,9 +120,12 @@ fn of_model(grid: &Grid, mut found: GridModel, most: usize, motion: &Motion) -> 
                 rows: left,
             })
         });
-    let first_left = modes.get(most).or(modes.last());
-    let complete = first_left.map_or(0.0, |(value, _)| -value.re);
-    let carried: Vec<GridMode> = all.take(most).collect();
+    let mut carried: Vec<GridMode> = all.collect();
+    carried.sort_by(|a, b| a.likely_decay().total_cmp(&b.likely_decay()));
+    let first_left = carried.get(most).or(carried.last());
+    let complete = first_left.map_or(0.0, GridMode::likely_decay);
+    carried.truncate(most);
+    in_order(&mut carried, |one| one.value);
     let mut modes: Vec<GridMode> = carried.iter().filter(|one| one.stands).cloned().collect();
     let discriminant = discriminant(&modes);
     modes.retain(|one| (one.change / one.value).norm() <= ARTEFACT);

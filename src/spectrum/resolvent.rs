@@ -19,8 +19,8 @@ use crate::stationary::generator::{
 /// Vectors of either side for each observable by which a model grows before its spectra are looked at again.
 const GROWTH: usize = 6;
 
-/// Most vectors of either side at one real shift, for each observable: at the first one, and at a slower one.
-const MOST: [usize; 2] = [48, 72];
+/// Most vectors of either side at one real shift, for each observable.
+const MOST: usize = 72;
 
 /// Looks at what stands, after each of which vectors are added where it does not, at most.
 const LOOKS: usize = 20;
@@ -114,7 +114,7 @@ impl Resolvent {
             growing.at_frequency(frequency, solves, cancellation)?;
         }
         let mut next = match begun {
-            [] => growing.with_shift(motion.rate, MOST[0], options, &mut work)?,
+            [] => growing.with_shift(motion.rate, options, &mut work)?,
             _ => growing.looked_at(),
         };
         for _ in 1..LOOKS {
@@ -126,7 +126,7 @@ impl Resolvent {
                 growing.at_frequency(place, SOLVES, cancellation)?;
                 growing.looked_at()
             } else {
-                growing.with_shift(place, MOST[1], options, &mut work)?
+                growing.with_shift(place, options, &mut work)?
             };
         }
         for place in &growing.places {
@@ -249,7 +249,6 @@ impl<'a> Growing<'a> {
     fn with_shift(
         &mut self,
         shift: f64,
-        most: usize,
         (rates, cancellation): (&RateOptions, &Cancellation),
         work: &mut AbsorbingWork,
     ) -> Result<Option<f64>, SpectrumError> {
@@ -261,7 +260,7 @@ impl<'a> Growing<'a> {
             chains.push(Some((deviation.clone(), centred(values))));
         }
         let mut stands = None;
-        for step in 1..=most {
+        for step in 1..=MOST {
             for chain in &mut chains {
                 let Some((column, row)) = chain.take() else {
                     continue;
