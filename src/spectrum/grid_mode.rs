@@ -24,8 +24,8 @@ impl GridMode {
         self.value + self.change * 2.0
     }
 
-    /// The decay rate that it is likely to have on finer cells. Dissipation slows down modes that oscillate and live on few
-    /// cells, and the extrapolation says so; of two real ones that are about to become a pair it says nothing.
+    /// The decay rate that it is likely to have on finer cells. Modes that oscillate and live on few cells decay too
+    /// slowly there, and the extrapolation says so; of two real ones that are about to become a pair it says nothing.
     pub(super) fn likely_decay(&self) -> f64 {
         let decay = -self.value.re;
         if self.value.im == 0.0 {
