@@ -72,8 +72,7 @@ pub(super) fn at_real_shifts(
             column = solver.times(&stage, &found.columns.vectors[last])?;
             row = solver.expected(&stage, &found.rows.vectors[last])?.values();
         }
-        work.factorisations += solver.work.factorisations;
-        work.passes += solver.work.passes;
+        work.add(solver.work);
         let slowest = found.modes.first().map_or(shift, |(one, _)| -one.re);
         if slowest * SLOWER >= shift || slowest <= SLOWEST * rate {
             break;

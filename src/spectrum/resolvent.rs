@@ -2,8 +2,6 @@
 
 use nalgebra::{Complex, DMatrix};
 
-use sprs::{CsMat, CsVecView};
-
 use super::at_frequency::AtFrequency;
 use super::grid::{Grid, ending};
 use super::model::{Basis, Products, ReducedModel, product};
@@ -14,6 +12,7 @@ use super::{SpectrumError, dot};
 use crate::cancellation::Cancellation;
 use crate::stationary::generator::{
     AbsorbingSolver, AbsorbingWork, RateError, RateOptions, RateSolver, ShiftedPattern,
+    transposed_product,
 };
 
 /// Vectors of either side for each observable by which a model grows before its spectra are looked at again.
@@ -111,6 +110,9 @@ impl Resolvent {
         let mut work = AbsorbingWork::default();
         let options = (rates, cancellation);
         for &(frequency, solves) in begun {
+            if !growing.has_room(rates) {
+                break;
+            }
             growing.at_frequency(frequency, solves, cancellation)?;
         }
         let mut next = match begun {
@@ -274,19 +276,13 @@ impl<'a> Growing<'a> {
             }
             let has_ended = chains.iter().all(Option::is_none);
             if step % GROWTH == 0 || has_ended {
-                self.products.grow(
-                    &self.rows,
-                    &self.columns,
-                    [&self.grid.full, &self.grid.half],
-                );
-                stands = self.unsettled();
+                stands = self.looked_at();
                 if stands.is_none() || has_ended {
                     break;
                 }
             }
         }
-        work.factorisations += solver.work.factorisations;
-        work.passes += solver.work.passes;
+        work.add(solver.work);
         Ok(stands)
     }
 
@@ -386,14 +382,6 @@ impl<'a> Growing<'a> {
             work,
         })
     }
-}
-
-/// Aᵀ x.
-fn transposed_product(matrix: &CsMat<f64>, vector: &[f64]) -> Vec<f64> {
-    let columns = matrix.outer_iterator();
-    let sum =
-        |column: CsVecView<'_, f64>| column.iter().map(|(row, rate)| rate * vector[row]).sum();
-    columns.map(sum).collect()
 }
 
 /// Less its mean over the cells: constants do nothing where columns sum to zero.

@@ -88,8 +88,7 @@ pub(super) fn slowest(
                 break;
             }
         }
-        work.factorisations += solver.work.factorisations;
-        work.passes += solver.work.passes;
+        work.add(solver.work);
         if stands {
             let found = last.and_then(|step| mode(grid, step, (&row, &column), motion));
             return Ok((GridModes::of(found), work));

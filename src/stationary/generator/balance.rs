@@ -30,7 +30,7 @@ pub(super) fn add_product(matrix: &CsMat<f64>, x: &[f64], out: &mut [f64]) {
 }
 
 /// Qᵀ x.
-pub(super) fn transposed_product(matrix: &CsMat<f64>, x: &[f64]) -> Vec<f64> {
+pub(crate) fn transposed_product(matrix: &CsMat<f64>, x: &[f64]) -> Vec<f64> {
     let columns = matrix.outer_iterator();
     let sum = |indices: &[usize], rates: &[f64]| {
         let pairs = indices.iter().zip(rates);

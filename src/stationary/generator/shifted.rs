@@ -15,7 +15,8 @@ use super::symbolic::Symbolic;
 use crate::cancellation::Cancellation;
 use crate::space::CellSpace;
 
-/// Residual, relative to the right side, at which a solve is good enough.
+/// Residual, relative to the right side, at which a solve is good enough: what is solved spans spaces, between which
+/// models hold the generator itself, so that their numbers have the square of this error.
 const TOLERANCE: f64 = 1e-5;
 
 /// Passes of refinement at most.
@@ -108,6 +109,8 @@ impl<'a> Shifted<'a> {
         for _ in 0..PASSES {
             let scales: Vec<f64> = residuals.iter().map(|one| length(one)).collect();
             for (residual, scale) in residuals.iter_mut().zip(&scales) {
+                // Nothing is left of nothing.
+                let scale = scale.max(f64::MIN_POSITIVE);
                 residual.iter_mut().for_each(|one| *one /= scale);
             }
             self.pass(&mut residuals, is_transposed);

@@ -22,25 +22,26 @@ pub(in crate::stationary::generator) fn solve_block<T: Number>(
     mut block: MatMut<'_, T>,
     is_transposed: bool,
 ) {
-    let task = Task {
+    let substitution = Substitution {
         symbolic,
         factors,
         is_transposed,
     };
     if let Some(root) = symbolic.fronts.len().checked_sub(1) {
-        task.upward(root, block.as_mut());
+        substitution.upward(root, block.as_mut());
         let vectors = block.ncols();
-        task.downward(root, block, Mat::zeros(0, vectors).as_ref());
+        substitution.downward(root, block, Mat::zeros(0, vectors).as_ref());
     }
 }
 
-struct Task<'a, T> {
+/// The factors, and which way through them.
+struct Substitution<'a, T> {
     symbolic: &'a Symbolic,
     factors: &'a [Factor<T>],
     is_transposed: bool,
 }
 
-impl<T: Number> Task<'_, T> {
+impl<T: Number> Substitution<'_, T> {
     /// The factors of a front's own cells, U to its boundary and L to it.
     fn parts(&self, top: usize) -> [MatRef<'_, T>; 3] {
         let front = &self.symbolic.fronts[top];
