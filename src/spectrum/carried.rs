@@ -24,7 +24,7 @@ const CORRECTIONS: usize = 8;
 
 /// A mode shares the factors of another one from which it is no farther than this share of the distance to modes that
 /// are not known. Alone, its vectors would get better below one only; the spaces that all corrections span make up for
-/// more. Of six modes of `coulomb_fc` 0.6 takes eight factorisations and 1.2 six, and with 2.5 they do not always stand.
+/// more. Of six modes of `coulomb_fc` 0.6 takes eight factorisations and 1.2 six; with 2.5 they do not always stand.
 const SHARED: f64 = 1.2;
 
 /// Distance of a shift from its mode, over the decay rate of the mode: the factors must not be singular.
