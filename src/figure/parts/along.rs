@@ -72,6 +72,16 @@ impl Track {
         }
     }
 
+    /// An end of the band about a value, above or below, as it is drawn: by decades a band that reaches beyond zero
+    /// reaches down without end.
+    fn end_of_band(&self, value: f64, error: f64) -> f64 {
+        if self.is_logarithmic {
+            self.place_of((value.abs() + error).max(0.0))
+        } else {
+            value + error
+        }
+    }
+
     /// The range of the ordinate; `None` without a number.
     pub(crate) fn range(&self) -> Option<(f64, f64)> {
         let values = self.curves.iter().flat_map(|curve| &curve.places);
@@ -252,7 +262,10 @@ pub(crate) fn draw_track(panel: &Panel, track: &Track, range: (f64, f64), (low, 
         let on_axis = |value: f64| track.place_of(value).clamp(low, high);
         let band = |sign: f64| {
             let pairs = curve.places.iter().zip(&curve.errors);
-            pairs.map(move |(place, error)| (place.0, on_axis(place.1 + sign * error)))
+            let end = move |place: f64, error: f64| {
+                track.end_of_band(place, sign * error).clamp(low, high)
+            };
+            pairs.map(move |(place, error)| (place.0, end(place.1, *error)))
         };
         let mut outline: Vec<(f64, f64)> = band(1.0).collect();
         outline.extend(band(-1.0).collect::<Vec<_>>().into_iter().rev());
@@ -282,4 +295,26 @@ pub(crate) fn parameter_range(points: &[Point]) -> (f64, f64) {
     }
     let half = if from == 0.0 { 0.5 } else { 0.1 * from.abs() };
     (from - half, from + half)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_band_by_decades_that_reaches_beyond_zero_has_no_lower_end() {
+        let track = Track {
+            title: String::new(),
+            is_logarithmic: true,
+            has_zero: false,
+            least: 0.0,
+            share: 1.0,
+            curves: Vec::new(),
+        };
+        let end = |value: f64, error: f64| track.end_of_band(value, error);
+        assert_eq!([end(0.05, 0.05), end(-0.05, 0.05)], [-1.0; 2]);
+        // The error is six times the value: zero lies in the band, and so does everything below the value.
+        assert_eq!(end(1e-5, -6e-5), SMALLEST.log10());
+        assert!(end(1e-5, -6e-6) < -5.0 && end(1e-5, -6e-6) > -6.0);
+    }
 }
