@@ -103,6 +103,21 @@ pub(crate) const PASSAGE_THERE: MeasureKind = of_passage(
 );
 pub(crate) const PASSAGE_BACK: MeasureKind =
     of_passage("return_rate", "1/t", "the rate back, of the slowest mode");
+pub(crate) const TRANSITION_FLUX: MeasureKind = of_passage(
+    "transition_flux",
+    "1/t",
+    "transitions from the first to the second of two regions per unit of time",
+);
+pub(crate) const TRANSITION_RATE: MeasureKind = of_passage(
+    "transition_rate",
+    "1/t",
+    "the same for each unit of time that the first region was the last one of the two",
+);
+pub(crate) const TRANSITION_TIME: MeasureKind = of_passage(
+    "transition_time",
+    "t",
+    "mean time on the way, from the last moment in the first region to the first one in the second",
+);
 pub(crate) const PASSAGE_KRAMERS: MeasureKind = of_passage(
     "kramers",
     "1/t",

@@ -23,9 +23,9 @@ use super::{GeneratorError, GeneratorOptions};
 use crate::MAX_DIMENSION;
 use crate::space::CellSpace;
 use crate::system::{BoundQuantity, LANES, Lanes, System};
-pub(crate) use border::lagrange;
-use border::{Border, GridLine};
-pub(crate) use ending::{AbsorbingGenerator, Ending, RateChange};
+use border::{Border, Closing, GridLine};
+pub(crate) use border::{lagrange, lagrange_slopes};
+pub(crate) use ending::{AbsorbingGenerator, BorderValue, Ending, RateChange};
 
 /// How stencils go on past a border. What the two differ by is an error of the border.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -119,6 +119,7 @@ fn closed(
         weights: [0; 2].map(|_| (0..space.n_cells()).map(weight).collect()),
         whole: RateChange::new(space.n_cells(), STENCIL * axes.len() * space.n_cells()),
         change: RateChange::new(space.n_cells(), 0),
+        on_border: Vec::new(),
         border,
     };
     for (axis, rates) in lines.rates.iter().enumerate() {
@@ -212,6 +213,7 @@ struct Assembly<'a> {
     whole: RateChange,
     change: RateChange,
     weights: [Vec<f64>; 2],
+    on_border: Vec<BorderValue>,
 }
 
 impl Assembly<'_> {
@@ -257,12 +259,14 @@ impl Assembly<'_> {
         let first = [&lower, &upper]
             .into_iter()
             .flatten()
-            .filter_map(|ways| ways.first());
+            .filter_map(|end| end.ways.first());
         for (position, changes) in first.flat_map(|end| &end.weights) {
             for (weights, change) in self.weights.iter_mut().zip(changes) {
                 weights[line.at(*position)] += change;
             }
         }
+        self.value_on_border(stretch, fluxes, (&lower, false));
+        self.value_on_border(stretch, fluxes, (&upper, true));
         for (face, window) in fluxes.iter().enumerate().take(to + 1).skip(from) {
             for (k, &weight) in window.iter().enumerate() {
                 if weight == 0.0 {
@@ -278,7 +282,7 @@ impl Assembly<'_> {
                     self.whole.add(stretch, line.at(position), face, weight);
                     continue;
                 };
-                let ways = end.as_deref().unwrap_or_default();
+                let ways = end.as_ref().map_or(&[][..], |end| &end.ways);
                 for (way, beyond) in ways.iter().enumerate() {
                     for &(source, share) in &beyond.read[cells] {
                         let (source, flux) = (line.at(source), weight * share);
@@ -293,6 +297,42 @@ impl Assembly<'_> {
                 }
             }
         }
+    }
+
+    /// Adds what a density on the border at an end of a stretch does, in the first way.
+    fn value_on_border(
+        &mut self,
+        stretch: &Stretch<'_>,
+        fluxes: &[Window],
+        (end, is_upper): (&Option<Closing>, bool),
+    ) {
+        let (line, (from, to)) = (stretch.line, stretch.range);
+        let known = end.as_ref().and_then(|end| Some((end, end.ways.first()?)));
+        let Some((end, beyond)) = known else { return };
+        let (state, volume) = self.border.on_border(line, end.crossing);
+        let mut rates = Vec::new();
+        for (face, window) in fluxes.iter().enumerate().take(to + 1).skip(from) {
+            let place = |far: usize| match is_upper {
+                true => Some(to + far),
+                false => from.checked_sub(far + 1),
+            };
+            // The window of a face begins so many cells below it.
+            let weight = |far: usize| window.get((place(far)? + REACH).checked_sub(face)?);
+            let reads = beyond.on_border.iter().enumerate();
+            let terms = reads.filter_map(|(far, share)| Some(share * weight(far)?));
+            let flux = volume * terms.sum::<f64>();
+            if flux == 0.0 {
+                continue;
+            }
+            if face > from {
+                rates.push((line.at(face - 1), -flux));
+            }
+            if face < to {
+                rates.push((line.at(face), flux));
+            }
+        }
+        let sum = beyond.sum.map(|weight| weight * volume);
+        self.on_border.push(BorderValue { state, rates, sum });
     }
 
     /// Adds the rates between modes where their places are kept.
@@ -335,6 +375,7 @@ impl Assembly<'_> {
             ends: whole.ends,
             endings: whole.endings,
             weights: self.weights,
+            on_border: self.on_border,
         };
         Ok((generator, self.change))
     }

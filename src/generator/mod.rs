@@ -46,7 +46,7 @@ mod spectral_viscosity;
 
 pub(crate) use absorbing::{
     AbsorbingGenerator, Closure, Ending, RateChange, assemble_absorbing, assemble_with_changes,
-    lagrange, levels,
+    lagrange, lagrange_slopes, levels,
 };
 pub use assemble::assemble;
 pub(crate) use assemble::{assemble_damped, assemble_lines};

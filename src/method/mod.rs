@@ -115,9 +115,9 @@ pub enum MethodError {
         /// Name of the axis.
         axis: String,
     },
-    /// Fields of passages over more than two axes, or over one that is no axis of cells.
+    /// Fields of passages over more than two axes, or fields or transitions over one that is no axis of cells.
     #[error(
-        "fields of passages are worked out over one or two axes of cells, and this system has {axes} axes{}; leave `fields` out of `[passage]`",
+        "transitions of passages are worked out over axes of cells, fields over one or two axes of cells, and this system has {axes} axes{}; leave `fields` and `transitions` out of `[passage]`",
         if *.has_series { ", one of them a series" } else { "" }
     )]
     FieldAxes {
@@ -211,7 +211,10 @@ fn has_densities(problem: &Problem) -> Result<(), MethodError> {
     }
     let space = problem.space();
     let has_series = space.axes().iter().any(crate::space::Axis::is_modes);
-    if family.fields().next().is_some() && (space.dimension() > 2 || has_series) {
+    let has_fields = family.fields().next().is_some();
+    let passages = &family.questions.passages;
+    let has_transitions = passages.iter().any(|one| one.transitions.is_some());
+    if has_fields && space.dimension() > 2 || (has_fields || has_transitions) && has_series {
         let axes = space.dimension();
         return Err(MethodError::FieldAxes { axes, has_series });
     }

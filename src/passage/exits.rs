@@ -1,6 +1,6 @@
 //! Shares of the processes that end by entering each part of a target.
 
-use super::{Passage, dot};
+use super::dot;
 use crate::generator::Ending;
 use crate::space::CellSpace;
 use crate::system::BoundQuantity;
@@ -12,9 +12,8 @@ pub(super) struct Exits<'a> {
 }
 
 impl<'a> Exits<'a> {
-    /// The parts of a passage on cells.
-    pub(super) fn new(passage: &'a Passage, space: &'a CellSpace) -> Self {
-        let parts = &passage.exits;
+    /// Parts, negative inside each, on cells.
+    pub(super) fn new(parts: &'a [BoundQuantity], space: &'a CellSpace) -> Self {
         Self { parts, space }
     }
 
@@ -26,7 +25,12 @@ impl<'a> Exits<'a> {
             let range = &self.space.axes()[axis];
             state[axis] = if is_upper { range.to() } else { range.from() };
         }
-        let levels = self.parts.iter().map(|part| part.at(&state)).enumerate();
+        self.part_at(&state)
+    }
+
+    /// The part that a state on a border, or beyond it, belongs to.
+    pub(super) fn part_at(&self, state: &[f64]) -> Option<usize> {
+        let levels = self.parts.iter().map(|part| part.at(state)).enumerate();
         let least = levels.min_by(|one, other| one.1.total_cmp(&other.1));
         least.map(|(part, _)| part)
     }

@@ -9,27 +9,27 @@
 
 use std::sync::Arc;
 
+use super::PassageError;
 use super::cells::cells;
 use super::exits::Exits;
 use super::rim::{beside_border, mend, rim};
 use super::solve::enclosed;
 use super::start::{at_state, at_states_of};
 use super::timed::{BORDER_ORDER, DAMPED, FEWER};
-use super::{Passage, PassageError, Start};
 use crate::cancellation::Cancellation;
 use crate::generator::{
     AbsorbingGenerator, Closure, Dissipation, GeneratorOptions, assemble_absorbing,
 };
 use crate::space::CellSpace;
 use crate::space::nodes::{FEWER_NODES, NODES};
-use crate::stationary::generator::{AbsorbingSolver, RateOptions};
+use crate::stationary::generator::{Absorbing, AbsorbingSolver, Expected, RateOptions};
 use crate::system::{BoundQuantity, System};
 
 /// States beside one along each axis, in cells, whose differences are an error there too.
 const BESIDE: usize = 2;
 
 /// Error at which solves stop to be iterated: nothing puts right what a field leaves.
-const TOLERANCE: f64 = 1e-10;
+pub(super) const TOLERANCE: f64 = 1e-10;
 
 /// A field is asked for over all states.
 #[derive(Debug, Clone)]
@@ -51,12 +51,47 @@ pub struct PassageField {
     pub errors: Vec<f64>,
 }
 
-/// A field by one grid at the states that are asked for: extrapolated to no dissipation, what half of it changes, and
-/// what a border of lower order changes.
-struct OnGrid {
-    values: Vec<Option<f64>>,
-    halved: Vec<Option<f64>>,
-    border: Vec<Option<f64>>,
+/// Numbers by one grid, as those of a field at the states that are asked for: extrapolated to no dissipation, what half
+/// of it changes, and what a border of lower order changes.
+pub(super) struct OnGrid {
+    pub(super) values: Vec<Option<f64>>,
+    pub(super) halved: Vec<Option<f64>>,
+    pub(super) border: Vec<Option<f64>>,
+}
+
+/// The same by the cells of a sweep and by the fewer ones of [`FEWER`], side by side.
+///
+/// # Errors
+/// The first of those of the grids.
+pub(super) fn on_three_grids<T: Send>(
+    solve: impl Fn(f64) -> Result<T, PassageError> + Sync,
+) -> Result<[T; 3], PassageError> {
+    let [(more, _), (fewest, _)] = FEWER;
+    let (finest, (coarse, coarsest)) = rayon::join(
+        || solve(1.0),
+        || rayon::join(|| solve(more), || solve(fewest)),
+    );
+    Ok([finest?, coarse?, coarsest?])
+}
+
+/// The errors of numbers by the finest grid: what dissipation, fewer cells and a border of lower order change.
+pub(super) fn errors_of(finest: &OnGrid, others: [&OnGrid; 2]) -> Vec<f64> {
+    let halved = finest.halved.iter().map(|change| DAMPED * size(*change));
+    let mut errors: Vec<f64> = halved.collect();
+    let mut border: Vec<f64> = finest.border.iter().map(|change| size(*change)).collect();
+    for (other, (factor, times)) in others.into_iter().zip(FEWER) {
+        let values = finest.values.iter().zip(&other.values);
+        for (error, (own, other)) in errors.iter_mut().zip(values) {
+            let change = own.zip(*other).map(|(own, other)| own - other);
+            *error = error.max(times * size(change));
+        }
+        let scale = f64::powi(factor, BORDER_ORDER);
+        for (error, change) in border.iter_mut().zip(&other.border) {
+            *error = error.max(scale * size(*change));
+        }
+    }
+    let both = errors.iter().zip(border);
+    both.map(|(error, border)| error + border).collect()
 }
 
 /// The field of a passage of a system at the centres of the cells of a sweep. Inside the target it is what the target
@@ -84,37 +119,28 @@ pub fn field(
         cancellation,
     };
     let solve = |factor: f64| question.on_grid(factor);
-    let [(more, of_more), (fewest, of_fewest)] = FEWER;
-    let (finest, (coarse, coarsest)) = rayon::join(
-        || solve(1.0),
-        || rayon::join(|| solve(more), || solve(fewest)),
-    );
-    let (finest, coarse, coarsest) = (finest?, coarse?, coarsest?);
-    let mut errors: Vec<f64> = finest
-        .halved
-        .iter()
-        .map(|change| DAMPED * size(*change))
-        .collect();
-    let mut border: Vec<f64> = finest.border.iter().map(|change| size(*change)).collect();
-    for (other, factor, times) in [(coarse, more, of_more), (coarsest, fewest, of_fewest)] {
-        for (error, (own, other)) in errors
-            .iter_mut()
-            .zip(finest.values.iter().zip(&other.values))
-        {
-            let change = own.zip(*other).map(|(own, other)| own - other);
-            *error = error.max(times * size(change));
-        }
-        let scale = f64::powi(factor, BORDER_ORDER);
-        for (error, change) in border.iter_mut().zip(&other.border) {
-            *error = error.max(scale * size(*change));
-        }
-    }
-    let errors = errors
-        .iter()
-        .zip(border)
-        .map(|(error, border)| error + border);
-    let errors = greatest_beside(space, &errors.collect::<Vec<f64>>());
+    let [finest, coarse, coarsest] = on_three_grids(solve)?;
+    let errors = errors_of(&finest, [&coarse, &coarsest]);
+    let errors = greatest_beside(space, &errors);
     Ok(question.whole(&finest.values, &errors))
+}
+
+/// What is expected of the way from each cell by a generator, and what others add to that, to first order.
+///
+/// # Errors
+/// Those of the solves.
+pub(super) fn with_changes(
+    solver: &mut AbsorbingSolver<'_>,
+    stage: &Absorbing<'_>,
+    [own, others @ ..]: [&AbsorbingGenerator; 3],
+    gain: impl Fn(&AbsorbingGenerator) -> Vec<f64>,
+) -> Result<(Expected, [Vec<f64>; 2]), PassageError> {
+    let expected = solver.expected(stage, &gain(own))?;
+    let [halved, border] = others.map(|other| {
+        let left = expected.left_by(&other.rates, &other.ends, &gain(other));
+        Ok::<_, PassageError>(solver.expected(stage, &left)?.values())
+    });
+    Ok((expected, [halved?, border?]))
 }
 
 /// A field with what it is solved with.
@@ -146,14 +172,7 @@ impl FieldQuestion<'_> {
             assemble(Dissipation::Half, Closure::Fourth)?,
             assemble(Dissipation::Full, Closure::Third)?,
         ];
-        let passage = Passage {
-            until: until.clone(),
-            exits: self.target.exits.clone(),
-            start: Start::Density(None),
-            times: Vec::new(),
-            quantiles: Vec::new(),
-        };
-        let exits = Exits::new(&passage, &space);
+        let exits = Exits::new(&self.target.exits, &space);
         let gain = |generator: &AbsorbingGenerator| match self.target.part {
             Some(part) => exits.rates(&generator.endings).swap_remove(part),
             None => generator.weights[0].clone(),
@@ -167,12 +186,8 @@ impl FieldQuestion<'_> {
         let matrix = full.matrix();
         let mut solver = AbsorbingSolver::new(&space, self.rates, self.cancellation);
         let (stage, _) = solver.stage(&matrix, &full.ends, &even)?;
-        let expected = solver.expected(&stage, &gain(&full))?;
-        let [halved, border] = others.map(|other| {
-            let left = expected.left_by(&other.rates, &other.ends, &gain(&other));
-            Ok::<_, PassageError>(solver.expected(&stage, &left)?.values())
-        });
-        let (mut halved, mut border) = (halved?, border?);
+        let (expected, [mut halved, mut border]) =
+            with_changes(&mut solver, &stage, [&full, &others[0], &others[1]], gain)?;
         if self.target.part.is_none() {
             // Another way to end sums at an oblique border.
             let [one, other] = &full.weights;
@@ -250,12 +265,12 @@ impl FieldQuestion<'_> {
     }
 }
 
-fn size(change: Option<f64>) -> f64 {
+pub(super) fn size(change: Option<f64>) -> f64 {
     change.map_or(0.0, f64::abs)
 }
 
 /// The greatest of the numbers of a cell and those beside it along every axis.
-fn greatest_beside(space: &CellSpace, numbers: &[f64]) -> Vec<f64> {
+pub(super) fn greatest_beside(space: &CellSpace, numbers: &[f64]) -> Vec<f64> {
     let mut all = numbers.to_vec();
     let shape = space.shape();
     for (axis, &count) in shape.iter().enumerate() {

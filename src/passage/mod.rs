@@ -51,18 +51,25 @@
 //! | what is handed from value to value | `memory.rs` |
 //! | numbers as fields over the start | `field.rs` |
 //! | the same beside a border | `rim.rs` |
+//! | processes on their way from one region to another | `reactive.rs` |
+//! | their density and current on a grid | `on_way.rs`, `current.rs` |
+//! | the steady state between nodes | `steady.rs` |
 
 mod cells;
+mod current;
 mod density_start;
 mod exits;
 mod field;
 mod lasting;
 mod memory;
+mod on_way;
 mod rate;
+mod reactive;
 mod rim;
 mod solve;
 mod spread;
 mod start;
+mod steady;
 mod survival;
 mod tensor;
 mod timed;
@@ -70,6 +77,7 @@ mod timed;
 pub use density_start::KnownDensity;
 pub use field::{FieldTarget, PassageField, field};
 pub use memory::PassageMemory;
+pub use reactive::{Reactive, reactive};
 pub use timed::{Timed, WithError, timed, timed_from};
 
 use crate::generator::{GeneratorError, levels};

@@ -91,7 +91,7 @@ impl Question<'_> {
         };
         let starts = [start.as_slice(), &coarse];
         let begun = other.map(|other| other.on(&space, &full.kept));
-        let exits = Exits::new(self.passage, &space);
+        let exits = Exits::new(&self.passage.exits, &space);
         let (mut both, lasting) = moments(
             &mut solver,
             ([&full, &half], &border, &exits),

@@ -256,6 +256,13 @@ impl Axis {
             .map_or(self.width(cell), |piece| piece.stretch(self.edges[edge]))
     }
 
+    /// The same at a place; `None` outside of the range.
+    pub(crate) fn stretch_at(&self, x: f64) -> Option<f64> {
+        let cell = self.find(x)?;
+        let piece = self.piece_of(cell);
+        Some(piece.map_or(self.width(cell), |piece| piece.stretch(x)))
+    }
+
     fn piece_of(&self, cell: usize) -> Option<&Piece> {
         let holds = |piece: &&Piece| cell < piece.first_cell + piece.cells;
         self.pieces.iter().find(holds)

@@ -220,6 +220,7 @@ pub(super) struct PassageDraft {
     /// Several regions, each of which ends the passage; in place of `until`.
     pub(super) exits: Option<Vec<String>>,
     pub(super) switching: Option<bool>,
+    pub(super) transitions: Option<bool>,
     pub(super) fields: Option<Vec<FieldKind>>,
     /// Axes and coordinates.
     pub(super) start: Vec<(String, f64)>,

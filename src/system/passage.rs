@@ -15,6 +15,8 @@ pub struct PassageQuestion {
     pub start: PassageStart,
     /// Whether the rates between the regions of start and end are wanted, there and back.
     pub switching: bool,
+    /// Either of the regions of start and end, where numbers of the transitions between them are wanted.
+    pub transitions: Option<Region>,
     /// What is wanted as a field over the state where the process starts.
     pub fields: Vec<FieldQuestion>,
     /// Times at which the probability is wanted that the process still goes on, ascending.
@@ -57,9 +59,21 @@ pub enum FieldKind {
     MeanTime,
     /// The probability that one region is entered before others.
     Committor,
+    /// The density of being on the way from one region to another.
+    ReactiveDensity,
+    /// A component of the current of processes on their way.
+    ReactiveCurrent,
 }
 
-words! { FieldKind, pub name: MeanTime: "mean-time", Committor: "committor" }
+words! { FieldKind, pub name: MeanTime: "mean-time", Committor: "committor", ReactiveDensity: "reactive-density",
+ReactiveCurrent: "reactive-current" }
+
+impl FieldKind {
+    /// Whether it is of transitions.
+    pub(crate) fn is_reactive(self) -> bool {
+        matches!(self, Self::ReactiveDensity | Self::ReactiveCurrent)
+    }
+}
 
 /// A field of a passage over the state where the process starts.
 #[derive(Debug, Clone)]
@@ -74,6 +88,8 @@ pub struct FieldQuestion {
     pub exits: Vec<Region>,
     /// The part whose probability is wanted, of a committor.
     pub part: Option<usize>,
+    /// The axis, of a component of a current.
+    pub axis: Option<usize>,
 }
 
 /// A level of a measure of the sweep: the values of the parameter are wanted at which the measure crosses it.

@@ -21,4 +21,5 @@ mod random_systems;
 mod sampled_passages;
 mod slow_modes;
 mod spectra;
+mod transitions;
 mod walls;

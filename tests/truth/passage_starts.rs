@@ -90,6 +90,7 @@ fn found(
         until: region(&until),
         exits: Vec::new(),
         switching: false,
+        transitions: None,
         fields: Vec::new(),
         start: match &from {
             Some(text) => PassageStart::Region(region(text)),

@@ -25,6 +25,14 @@ impl GridValues<'_> {
         self.values[i * self.y.len() + j]
     }
 
+    /// The value at a point of the grid's rectangle, linear along each axis between neighbouring points.
+    pub(crate) fn between(&self, (x, y): (f64, f64)) -> Option<f64> {
+        let ((i, s), (j, t)) = (beside(self.x, x)?, beside(self.y, y)?);
+        let low = (1.0 - s) * self.value(i, j) + s * self.value(i + 1, j);
+        let high = (1.0 - s) * self.value(i, j + 1) + s * self.value(i + 1, j + 1);
+        Some((1.0 - t) * low + t * high)
+    }
+
     /// Number of the edge from point `(i, j)` to its neighbour along x (`along_x`) or y.
     fn edge(&self, i: usize, j: usize, along_x: bool) -> usize {
         2 * (i * self.y.len() + j) + usize::from(along_x)
@@ -135,6 +143,16 @@ fn follow(start: usize, neighbours: &[[usize; 2]], visited: &mut [bool]) -> Vec<
         line.push(start);
     }
     line
+}
+
+/// The place of the two neighbours of a coordinate that is clamped to the range of the places, and its share of the way
+/// to the second; `None` of fewer than two places.
+pub(crate) fn beside(places: &[f64], at: f64) -> Option<(usize, f64)> {
+    let last = places.len().checked_sub(2)?;
+    let above = places.partition_point(|&place| place <= at);
+    let below = above.saturating_sub(1).min(last);
+    let (a, b) = (places[below], places[below + 1]);
+    Some((below, ((at - a) / (b - a)).clamp(0.0, 1.0)))
 }
 
 /// A line without the points that lie within `alike` pixels of the chord between those that are kept; `place` gives

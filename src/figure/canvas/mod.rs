@@ -25,6 +25,7 @@ mod png;
 pub(super) mod raster;
 mod scale;
 pub(super) mod space;
+pub(super) mod streamline;
 pub(super) mod style;
 pub(super) mod svg;
 pub(super) mod symbols;

@@ -1,6 +1,6 @@
-//! Fields of passages over the state where they start (`field_exit_mean_time`, `field_exit_committor`): over two axes a
-//! map at each chosen value and a sheet of all, with contours and the border of the target; over one axis curves with
-//! the bands of their errors.
+//! Fields of passages over the state (`field_exit_mean_time`, `field_exit_committor`, `field_exit_reactive_density`).
+//! Over two axes a map at each chosen value and a sheet of all, with contours and the border of the target; over one
+//! axis curves with the bands of their errors. The components of a current are one map, with the lines along it.
 
 use super::spectrum::{Chart, Line};
 use super::{Drawn, Kind, Sketch, Sweep};
@@ -8,20 +8,17 @@ use crate::continuation::{Point, StateField, SweepResult};
 use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::contour::{GridValues, simplify};
 use crate::figure::canvas::frame::{self, Scale};
-use crate::figure::canvas::heat::Picture;
 use crate::figure::canvas::legend::{Legend, Swatch};
 use crate::figure::canvas::look::{Look, on_heat};
 use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape};
 use crate::figure::canvas::style::{Colour, INK, MARGIN, Stroke, TEXT};
+use crate::figure::parts::field_map::{ALIKE, FieldMap, LEVELS, where_seen, whole};
 use crate::figure::parts::joint_map::{with_letter, write_above};
-use crate::figure::parts::view::{middles, resolution};
+use crate::figure::parts::view::middles;
 use crate::figure::parts::{caption, names, table};
 use crate::figure::print::{Figure, Print};
-use crate::system::{FieldKind, FieldQuestion};
+use crate::system::{Family, FieldKind, FieldQuestion};
 
-/// Contours are drawn at these shares of the largest value, that of one half wider.
-const LEVELS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
-const HALF: f64 = 0.5;
 /// Side of a map by itself and of one on a sheet, the narrowest one there, and the highest, in pixels.
 const SIDE: f64 = 290.0;
 const SMALL: f64 = 190.0;
@@ -32,8 +29,6 @@ const BETWEEN: f64 = 22.0;
 const MOST_COLUMNS: usize = 3;
 /// Squares along each axis on which the border of a target is followed.
 const SQUARES: usize = 240;
-/// What lies so near to the chord of a border, in pixels, is left out.
-const ALIKE: f64 = 0.05;
 /// The line of a border, black or white on a map.
 fn border(colour: Colour) -> Stroke {
     Stroke::solid(colour, 1.6).dashed(&[5.0, 2.5])
@@ -49,8 +44,14 @@ pub(super) const KIND: Kind = Kind {
 fn sketches<'a>(sweep: &Sweep<'a>) -> Vec<Sketch<'a>> {
     let result = sweep.result;
     let mut all = Vec::new();
-    for asked in sweep.family().fields() {
-        let name = format!("field_{}", asked.name);
+    let is_map = sweep.family().model().axes.len() == 2;
+    // A map has all components of a current.
+    let is_own = |asked: &&FieldQuestion| !is_map || asked.axis.is_none_or(|axis| axis == 0);
+    for asked in sweep.family().fields().filter(is_own) {
+        let name = match is_map && asked.axis.is_some() {
+            true => format!("field_{}", together(sweep.family(), asked)),
+            false => format!("field_{}", asked.name),
+        };
         if sweep.family().model().axes.len() == 1 {
             let chosen = sweep.chosen.clone();
             all.push(Sketch::new(name, move |print| {
@@ -72,9 +73,29 @@ fn sketches<'a>(sweep: &Sweep<'a>) -> Vec<Sketch<'a>> {
     all
 }
 
+/// What the components of a current are called together.
+fn together(family: &Family, asked: &FieldQuestion) -> String {
+    let axis = asked.axis.map_or("", |axis| family.axis(axis));
+    let name = asked.name.strip_suffix(axis).unwrap_or(&asked.name);
+    name.trim_end_matches('_').to_owned()
+}
+
 fn of_point<'a>(point: &'a Point, asked: &FieldQuestion) -> Option<&'a StateField> {
     let mut fields = point.report.fields.iter();
     fields.find(|field| field.name == asked.name)
+}
+
+/// A field of a point, or all components of a current.
+fn all_of_point<'a>(
+    (family, point): (&Family, &'a Point),
+    asked: &FieldQuestion,
+) -> Vec<&'a StateField> {
+    let is_together = |other: &&FieldQuestion| match asked.axis {
+        Some(_) => other.axis.is_some() && together(family, other) == together(family, asked),
+        None => other.name == asked.name,
+    };
+    let all = family.fields().filter(is_together);
+    all.filter_map(|one| of_point(point, one)).collect()
 }
 
 /// What a field is, for titles.
@@ -82,11 +103,13 @@ fn title(asked: &FieldQuestion) -> &'static str {
     match asked.kind {
         FieldKind::MeanTime => "mean time",
         FieldKind::Committor => "committor",
+        FieldKind::ReactiveDensity => "reactive density",
+        FieldKind::ReactiveCurrent => "reactive current",
     }
 }
 
 /// What a field is, for captions.
-fn words(asked: &FieldQuestion) -> String {
+fn words(family: &Family, asked: &FieldQuestion) -> String {
     let [until, part] = [
         Some(&asked.until),
         asked.part.and_then(|part| asked.exits.get(part)),
@@ -99,6 +122,25 @@ fn words(asked: &FieldQuestion) -> String {
         FieldKind::Committor => format!(
             "Committor: probability to enter {part} before any other part of {until}, over the state where a process starts"
         ),
+        FieldKind::ReactiveDensity => format!("Density of being on the way {}", way(asked)),
+        FieldKind::ReactiveCurrent => {
+            let axis = asked.axis.map_or("", |axis| family.axis(axis));
+            match family.model().axes.len() {
+                1 => format!(
+                    "Current along {axis} of processes on their way {}",
+                    way(asked)
+                ),
+                _ => format!("Current of processes on their way {}", way(asked)),
+            }
+        }
+    }
+}
+
+/// Between which regions transitions are.
+fn way(asked: &FieldQuestion) -> String {
+    match &asked.exits[..] {
+        [from, to] => format!("from {} to {}", from.text(), to.text()),
+        _ => String::new(),
     }
 }
 
@@ -130,71 +172,12 @@ fn draw_curves(
         ordinate: title(asked).to_owned(),
         is_over_decades: false,
         columns: [family.axis(0).to_owned(), title(asked).replace(' ', "_")],
-        seen: format!("{}{at}, each with the band of its error.", words(asked)),
+        seen: format!(
+            "{}{at}, each with the band of its error.",
+            words(family, asked)
+        ),
     };
     chart.draw(result, &lines, print)
-}
-
-/// A map of a field over two axes.
-struct FieldMap<'a> {
-    field: &'a StateField,
-    places: [Vec<f64>; 2],
-    ranges: [(f64, f64); 2],
-    largest: f64,
-}
-
-impl<'a> FieldMap<'a> {
-    fn new(field: &'a StateField) -> Option<Self> {
-        let [x, y] = &field.axes[..] else {
-            return None;
-        };
-        // Colours go from the centre of one cell to that of the next.
-        if x.count().min(y.count()) < 2 {
-            return None;
-        }
-        let finite = field.values.iter().filter(|value| value.is_finite());
-        let largest = finite.fold(0.0, |most: f64, value| most.max(*value));
-        (largest > 0.0).then_some(Self {
-            field,
-            places: [x.centres(), y.centres()],
-            ranges: [(x.from(), x.to()), (y.from(), y.to())],
-            largest,
-        })
-    }
-
-    /// The colours of all pixels, between the centres of cells by straight lines.
-    fn picture(&self, look: &Look, map: Rectangle, largest: f64) -> Picture {
-        let size = (resolution(map.width), resolution(map.height));
-        let [x, y] = &self.places;
-        let across: Vec<(usize, f64)> = middles(self.ranges[0], size.0)
-            .into_iter()
-            .map(|at| beside(x, at))
-            .collect();
-        let up: Vec<(usize, f64)> = middles(self.ranges[1], size.1)
-            .into_iter()
-            .map(|at| beside(y, at))
-            .collect();
-        let value = |i: usize, j: usize| self.field.values[i * y.len() + j];
-        Picture::new(look, size, |column, row| {
-            let ((i, s), (j, t)) = (across[column], up[row]);
-            let low = (1.0 - s) * value(i, j) + s * value(i + 1, j);
-            let high = (1.0 - s) * value(i, j + 1) + s * value(i + 1, j + 1);
-            Some(((1.0 - t) * low + t * high) / largest)
-        })
-    }
-
-    fn draw_contours(&self, (look, panel): (&Look, &Panel), largest: f64) {
-        let [x, y] = &self.places;
-        let values = &self.field.values;
-        let grid = GridValues { x, y, values };
-        for share in LEVELS {
-            let width = if share == HALF { 1.6 } else { 0.8 };
-            let stroke = Stroke::solid(on_heat(look, share), width);
-            for line in grid.contour(share * largest) {
-                panel.draw(&line, Shape::Line(stroke));
-            }
-        }
-    }
 }
 
 /// The borders of the parts of a target at a value of the parameter.
@@ -237,9 +220,17 @@ fn draw_maps(
     print: &Print<'_>,
 ) -> Drawn {
     let family = &result.subject.family;
-    let known = points
+    let fields: Vec<(f64, Vec<&StateField>)> = points
         .iter()
-        .filter_map(|point| Some((point.value, FieldMap::new(of_point(point, asked)?)?)));
+        .map(|point| (point.value, all_of_point((family, point), asked)))
+        .collect();
+    let extent = match asked.kind.is_reactive() {
+        true => where_seen(fields.iter().map(|(_, fields)| &fields[..])),
+        false => fields.iter().find_map(|(_, fields)| whole(fields)),
+    }?;
+    let known = fields
+        .iter()
+        .filter_map(|(value, fields)| Some((*value, FieldMap::new(fields, extent)?)));
     let known: Vec<(f64, FieldMap<'_>)> = known.collect();
     let share = print.share(known.len());
     let maps = &known[share.clone()];
@@ -278,7 +269,7 @@ fn draw_maps(
     let heading = Heading::new(look, print.title, width);
     let bordered = match asked.kind {
         FieldKind::MeanTime => "border of the target",
-        FieldKind::Committor => "borders of the regions",
+        _ => "borders of the regions",
     };
     let entries = vec![(Swatch::Curve(border(INK)), bordered.to_owned())];
     let legend = Legend::new(look, entries, width - 2.0 * MARGIN);
@@ -298,46 +289,62 @@ fn draw_maps(
         let panel = page.panel(place, x, y);
         let picture = map.picture(look, place, largest);
         panel.draw(&[(x.0, y.0), (x.1, y.1)], Shape::Image(picture));
-        map.draw_contours((look, &panel), largest);
+        map.draw_lines((&page, &panel), largest);
         draw_borders(result, (asked, *value), (look, &panel), map.ranges);
         frame::border(&page, place);
         across.draw_below(&page, place, number + columns >= maps.len());
         up.draw_left(&page, place, number % columns == 0);
     }
-    bar.draw(&page, all, &LEVELS);
+    let is_current = asked.kind == FieldKind::ReactiveCurrent;
+    bar.draw(&page, all, if is_current { &[] } else { &LEVELS });
     legend.draw(&page, left + 0.5 * whole.0, below);
-    let errors = maps.iter().flat_map(|(_, map)| &map.field.errors);
-    let seen = format!(
-        "{}{}, with contours at 10, 30, 50 (wide), 70 and 90 % of the largest value; errors are {} at most.",
-        words(asked),
-        caption::at(family, maps.iter().map(|(value, _)| *value)),
-        caption::number(errors.fold(0.0, |most: f64, error| most.max(*error))),
-    );
+    let shown = match is_current {
+        true => {
+            ", with lines along it; colours have its size, with each component over the range of its axis".to_owned()
+        }
+        false => {
+            let errors = maps.iter().flat_map(|(_, map)| map.fields);
+            let errors = errors.flat_map(|field| &field.errors);
+            let most = errors.fold(0.0, |most: f64, error| most.max(*error));
+            format!(
+                ", with contours at 10, 30, 50 (wide), 70 and 90 % of the largest value; errors are {} at most",
+                caption::number(most)
+            )
+        }
+    };
+    let at = caption::at(family, maps.iter().map(|(value, _)| *value));
+    let seen = format!("{}{at}{shown}.", words(family, asked));
     let caption = caption::of_sweep(result, seen, &[]);
     Some(Figure::new(&page, caption, table_of(result, maps)).of_panels(known.len()))
-}
-
-/// The cell below a place among centres, and how far the place is on the way to the next.
-fn beside(centres: &[f64], place: f64) -> (usize, f64) {
-    let above = centres.partition_point(|&centre| centre <= place);
-    let below = above.saturating_sub(1).min(centres.len().saturating_sub(2));
-    let (a, b) = (centres[below], centres[below + 1]);
-    (below, ((place - a) / (b - a)).clamp(0.0, 1.0))
 }
 
 fn table_of(result: &SweepResult, maps: &[(f64, FieldMap<'_>)]) -> String {
     let family = &result.subject.family;
     let rows = maps.iter().flat_map(|(value, map)| {
-        let [x, y] = &map.places;
-        let numbers = map.field.values.iter().zip(&map.field.errors).enumerate();
-        numbers.map(|(cell, (field, error))| {
+        let [x, y] = [0, 1].map(|axis| map.fields[0].axes[axis].centres());
+        let cells = 0..x.len() * y.len();
+        cells.map(move |cell| {
             let (i, j) = (cell / y.len(), cell % y.len());
-            [*value, x[i], y[j], *field, *error]
-                .map(table::number)
-                .to_vec()
+            let numbers = map
+                .fields
+                .iter()
+                .flat_map(|field| [field.values[cell], field.errors[cell]]);
+            let row = [*value, x[i], y[j]].into_iter().chain(numbers);
+            row.map(table::number).collect()
         })
     });
-    let axes = (family.axis(0), family.axis(1));
-    let columns = [family.parameter(), axes.0, axes.1, "value", "error"];
+    let axes = [family.axis(0), family.axis(1)];
+    let columns = match maps.first().map(|(_, map)| map.fields.len()) {
+        Some(2) => axes
+            .iter()
+            .flat_map(|axis| [format!("current_{axis}"), format!("error_{axis}")])
+            .collect(),
+        _ => vec!["value".to_owned(), "error".to_owned()],
+    };
+    let first = [family.parameter(), axes[0], axes[1]];
+    let columns: Vec<&str> = first
+        .into_iter()
+        .chain(columns.iter().map(String::as_str))
+        .collect();
     table::table(&columns, rows)
 }

@@ -6,6 +6,7 @@ pub(super) mod branches;
 pub(super) mod caption;
 pub(super) mod crossed;
 pub(super) mod curve_line;
+pub(super) mod field_map;
 pub(super) mod inset;
 pub(super) mod joint_map;
 pub(super) mod joint_sheet;

@@ -26,6 +26,18 @@ pub(super) struct Beyond {
     pub(super) read: Read,
     /// By how much the weights of the last cells differ from one, for a sum that ends at the border, in two ways.
     pub(super) weights: Vec<(usize, [f64; 2])>,
+    /// The weight of the value on the border in what is read in each of the three cells.
+    pub(super) on_border: [f64; REACH],
+    /// The weight of that value in a sum, in two ways.
+    pub(super) sum: [f64; 2],
+}
+
+/// An end of a stretch of cells, and where it is.
+pub(super) struct Closing {
+    /// What stencils read there, in each way.
+    pub(super) ways: Vec<Beyond>,
+    /// Where the line crosses the border.
+    pub(super) crossing: f64,
 }
 
 /// A line of cells along an axis.
@@ -70,7 +82,7 @@ impl Border<'_> {
         line: &GridLine,
         (from, to): (usize, usize),
         is_upper: bool,
-    ) -> Vec<Beyond> {
+    ) -> Closing {
         let (inner, outer) = if is_upper {
             (to - 1, to)
         } else {
@@ -79,13 +91,28 @@ impl Border<'_> {
         let crossing = self.crossing(line, inner, outer);
         let gradient = self.gradient(line, crossing);
         let Some(is_zero) = self.is_zero(line, &gradient, inner, is_upper) else {
-            return self.cells.iter().map(|_| Beyond::default()).collect();
+            // What comes in is what the border has.
+            let nothing = |_: &usize| Beyond {
+                on_border: [1.0; REACH],
+                ..Beyond::default()
+            };
+            let ways = self.cells.iter().map(nothing).collect();
+            return Closing { ways, crossing };
         };
         let cells = self.share_of_a_cell(line.axis, inner, outer, crossing);
         let shares = shares_of_normal(&gradient, line.axis);
         let through =
             |&most: &usize| through_cells((from, to), is_upper, (is_zero, cells), (most, shares));
-        self.cells.iter().map(through).collect()
+        let ways = self.cells.iter().map(through).collect();
+        Closing { ways, crossing }
+    }
+
+    /// The state at which a line crosses the border, and the local volume there.
+    pub(super) fn on_border(&self, line: &GridLine, crossing: f64) -> ([f64; MAX_DIMENSION], f64) {
+        let state = self.state(line, crossing);
+        let axes = self.space.axes().iter().zip(&state);
+        let stretches = axes.filter_map(|(axis, &x)| axis.stretch_at(x));
+        (state, stretches.product())
     }
 
     /// Where the line crosses the border between two neighbouring nodes, by bracketed secants.
@@ -212,9 +239,18 @@ fn through_cells(
             .map(|(back, weight)| (place(back + skip), share * weight))
             .collect()
     };
-    let changes = at_nodes(beyond_the_sum(&places, cells), -1.0);
+    let sum = beyond_the_sum(&places, cells);
+    let of_border = |weights: &[f64]| match weights.last() {
+        Some(&last) if is_zero => last,
+        _ => 0.0,
+    };
+    let sum_on_border = of_border(&sum);
+    let changes = at_nodes(sum, -1.0);
+    let reads: [Vec<f64>; REACH] = std::array::from_fn(|far| lagrange(&places, 1.0 + far as f64));
     Beyond {
-        read: std::array::from_fn(|far| at_nodes(lagrange(&places, 1.0 + far as f64), 1.0)),
+        on_border: std::array::from_fn(|far| of_border(&reads[far])),
+        sum: shares.map(|share| -share * sum_on_border),
+        read: reads.map(|weights| at_nodes(weights, 1.0)),
         weights: changes
             .into_iter()
             .map(|(position, change)| (position, shares.map(|share| share * change)))
@@ -271,6 +307,21 @@ pub(crate) fn lagrange(places: &[f64], at: f64) -> Vec<f64> {
         others.fold(1.0, |product, (_, place)| {
             product * (at - place) / (places[index] - place)
         })
+    };
+    (0..places.len()).map(weight).collect()
+}
+
+/// Weights of values at some places in the slope at one of these of the polynomial through them.
+pub(crate) fn lagrange_slopes(places: &[f64], own: usize) -> Vec<f64> {
+    let others = || (0..places.len()).filter(move |&other| other != own);
+    let apart = |one: usize, other: usize| places[one] - places[other];
+    let weight = |index: usize| {
+        if index == own {
+            return others().map(|other| 1.0 / apart(own, other)).sum();
+        }
+        let between = others().filter(|&other| other != index);
+        let shares = between.map(|other| apart(own, other) / apart(index, other));
+        shares.product::<f64>() / apart(index, own)
     };
     (0..places.len()).map(weight).collect()
 }

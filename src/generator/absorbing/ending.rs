@@ -2,6 +2,8 @@
 
 use sprs::CsMat;
 
+use crate::MAX_DIMENSION;
+
 /// A part of the rate at which a process ends from a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ending {
@@ -14,6 +16,18 @@ pub(crate) struct Ending {
     pub source: usize,
     /// Rate, per unit time.
     pub rate: f64,
+}
+
+/// What a density that is not zero on the border of a region does to the cells beside it: with v its value at a state
+/// there, rates times v come into cells, and sums count weights times v more.
+#[derive(Debug, Clone)]
+pub(crate) struct BorderValue {
+    /// The state on the border; the first entries count, one an axis.
+    pub state: [f64; MAX_DIMENSION],
+    /// Cells and rates, each any number of times.
+    pub rates: Vec<(usize, f64)>,
+    /// Weights of sums, in two ways as those of cells are.
+    pub sum: [f64; 2],
 }
 
 /// The generator on the cells outside of a region.
@@ -31,6 +45,8 @@ pub(crate) struct AbsorbingGenerator {
     /// Weights with which the unknowns sum to the mass outside of the region: zero inside, one away from the border,
     /// where the density does not end between two nodes. In two ways, which differ where the border is oblique.
     pub weights: [Vec<f64>; 2],
+    /// What a density on the border would do, of every place where a line of the grid crosses it.
+    pub on_border: Vec<BorderValue>,
 }
 
 impl AbsorbingGenerator {

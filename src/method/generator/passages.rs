@@ -7,14 +7,17 @@ use crate::cancellation::Cancellation;
 use crate::continuation::{Finding, Measure, PassageFault, SolveReport, StateField};
 use crate::density::EstimatedDensity;
 use crate::generator::GeneratorOptions;
-use crate::method::measures::measures_of_passage;
+use crate::method::measures::{measures_of_passage, transition_measures};
 use crate::method::{GeneratorMethodOptions, MethodError, Problem};
 use crate::passage::{
-    FieldTarget, KnownDensity, Passage, PassageError, PassageMemory, Timed, field, timed_from,
+    FieldTarget, KnownDensity, Passage, PassageError, PassageField, PassageMemory, Timed, field,
+    reactive, timed_from,
 };
 use crate::space::CellSpace;
 use crate::stationary::generator::{RateError, RateOptions};
-use crate::system::{FieldQuestion, Model, ParameterValues, PassageQuestion, Region, System};
+use crate::system::{
+    FieldKind, FieldQuestion, Model, ParameterValues, PassageQuestion, PassageStart, Region, System,
+};
 
 /// Error at which times stop to be iterated, relative to their sum. Numbers have its square: they are put right by what
 /// equations from both sides leave.
@@ -65,7 +68,20 @@ pub(super) fn add_passages(
             Ok(measures) => report.measures.extend(measures),
             Err(fault) => faults.push(fault),
         }
-        for wanted in &question.fields {
+        if let Some(either) = &question.transitions {
+            match asked.transitions(question, either)? {
+                Ok((measures, fields)) => {
+                    report.measures.extend(measures);
+                    report.fields.extend(fields);
+                }
+                Err(fault) => faults.push(fault),
+            }
+        }
+        let own = question
+            .fields
+            .iter()
+            .filter(|wanted| !wanted.kind.is_reactive());
+        for wanted in own {
             match asked.field(wanted)? {
                 Ok(field) => report.fields.push(field),
                 Err(fault) => faults.push(fault),
@@ -131,6 +147,49 @@ impl Asked<'_> {
         Ok(Ok(with_moved_ends(all)))
     }
 
+    /// The numbers of the transitions between the regions of a passage, and those fields of them that are wanted.
+    fn transitions(
+        &self,
+        question: &PassageQuestion,
+        either: &Region,
+    ) -> Answer<(Vec<Measure>, Vec<StateField>)> {
+        let (PassageStart::Region(from), Some(density)) = (&question.start, self.density) else {
+            return Ok(Err(PassageFault::NoDensity));
+        };
+        let bind = |region: &Region| region.level().bind(&self.values);
+        let target = FieldTarget {
+            until: bind(either)?,
+            exits: vec![bind(from)?, bind(&question.until)?],
+            part: None,
+        };
+        let settings = (&self.generator, &self.rates);
+        let cells = (self.system, self.space);
+        let found = reactive(cells, &target, density, settings, self.cancellation);
+        or_fault(found.map(|found| {
+            let numbers = [found.flux, found.rate, found.duration];
+            let fields = question.fields.iter().filter_map(|wanted| {
+                let field = match (wanted.kind, wanted.axis) {
+                    (FieldKind::ReactiveDensity, _) => Some(&found.density),
+                    (FieldKind::ReactiveCurrent, Some(axis)) => found.current.get(axis),
+                    _ => None,
+                };
+                Some(self.stored(&wanted.name, field?.clone()))
+            });
+            let fields = fields.collect();
+            (transition_measures(question, numbers), fields)
+        }))
+    }
+
+    /// A field as it is handed on.
+    fn stored(&self, name: &str, found: PassageField) -> StateField {
+        StateField {
+            name: name.to_owned(),
+            axes: self.space.axes().to_vec(),
+            values: found.values,
+            errors: found.errors,
+        }
+    }
+
     fn field(&self, wanted: &FieldQuestion) -> Answer<StateField> {
         let bind = |region: &Region| region.level().bind(&self.values);
         let target = FieldTarget {
@@ -146,12 +205,7 @@ impl Asked<'_> {
             settings,
             self.cancellation,
         );
-        or_fault(found.map(|found| StateField {
-            name: wanted.name.clone(),
-            axes: self.space.axes().to_vec(),
-            values: found.values,
-            errors: found.errors,
-        }))
+        or_fault(found.map(|found| self.stored(&wanted.name, found)))
     }
 }
 

@@ -9,7 +9,9 @@ mod slow_modes;
 mod spectra;
 
 pub(crate) use passage::passage_columns;
-pub(super) use passage::{formula_measures, measures as measures_of_passage, switching_measures};
+pub(super) use passage::{
+    formula_measures, measures as measures_of_passage, switching_measures, transition_measures,
+};
 pub(super) use slow_modes::measures as measures_of_slow_modes;
 pub(super) use spectra::measures as measures_of_spectrum;
 

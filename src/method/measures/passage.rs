@@ -3,6 +3,7 @@
 use crate::continuation::measure::{
     PASSAGE_BACK, PASSAGE_DEVIATION, PASSAGE_KRAMERS, PASSAGE_MEAN, PASSAGE_MELNIKOV,
     PASSAGE_QUANTILE, PASSAGE_RATE, PASSAGE_SHARE, PASSAGE_SURVIVAL, PASSAGE_THERE,
+    TRANSITION_FLUX, TRANSITION_RATE, TRANSITION_TIME,
 };
 use crate::continuation::{Measure, MeasureColumn, MeasureKind};
 use crate::passage::WithError;
@@ -36,7 +37,8 @@ pub(in crate::method) fn columns(question: &PassageQuestion) -> Vec<MeasureColum
         .map(|share| at(PASSAGE_QUANTILE, share));
     let moments = moments.into_iter().chain(exits);
     let numbers = moments.chain(times).chain(shares);
-    numbers.chain(rates_between(question)).collect()
+    let numbers = numbers.chain(rates_between(question));
+    numbers.chain(transition_columns(question)).collect()
 }
 
 /// Whether the equations are those of a damped particle in a potential at an end of the path.
@@ -78,17 +80,30 @@ fn rates_between(question: &PassageQuestion) -> impl Iterator<Item = MeasureColu
         })
 }
 
+/// The columns of transitions between two regions.
+fn transition_columns(question: &PassageQuestion) -> impl Iterator<Item = MeasureColumn> {
+    let all = [TRANSITION_FLUX, TRANSITION_RATE, TRANSITION_TIME].into_iter();
+    all.filter(|_| question.transitions.is_some())
+        .map(|kind| MeasureColumn {
+            kind,
+            of: question.name.clone(),
+        })
+}
+
+/// Transitions between two regions as measures: flux, rate and duration.
+pub(in crate::method) fn transition_measures(
+    question: &PassageQuestion,
+    numbers: [WithError; 3],
+) -> Vec<Measure> {
+    with_errors(transition_columns(question), numbers.into_iter())
+}
+
 /// The rates between two states as measures, there and back.
 pub(in crate::method) fn switching_measures(
     question: &PassageQuestion,
     rates: [WithError; 2],
 ) -> Vec<Measure> {
-    let pairs = rates_between(question).zip(rates);
-    let one = |(column, (value, error)): (MeasureColumn, WithError)| Measure {
-        error: Some(error),
-        ..column.kind.measure(&column.of, value)
-    };
-    pairs.map(one).collect()
+    with_errors(rates_between(question), rates.into_iter())
 }
 
 /// The numbers of a passage as measures, from the order of its columns.
@@ -96,7 +111,15 @@ pub(in crate::method) fn measures(
     question: &PassageQuestion,
     numbers: impl Iterator<Item = WithError>,
 ) -> Vec<Measure> {
-    let pairs = columns(question).into_iter().zip(numbers);
+    with_errors(columns(question).into_iter(), numbers)
+}
+
+/// Numbers as measures of columns, in their order.
+fn with_errors(
+    columns: impl Iterator<Item = MeasureColumn>,
+    numbers: impl Iterator<Item = WithError>,
+) -> Vec<Measure> {
+    let pairs = columns.zip(numbers);
     let one = |(column, (value, error)): (MeasureColumn, WithError)| Measure {
         error: Some(error),
         ..column.kind.measure(&column.of, value)

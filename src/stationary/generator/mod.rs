@@ -53,7 +53,7 @@ mod triangular;
 mod updates;
 
 pub use absorbing::AbsorbingWork;
-pub(crate) use absorbing::{AbsorbingSolver, Expected, FactorMemory};
+pub(crate) use absorbing::{Absorbing, AbsorbingSolver, Expected, FactorMemory};
 pub(crate) use balance::{dot, transposed_product};
 pub(crate) use memory::SolverMemory;
 pub use preconditioner::{Estimate, RateMethod, estimate};

@@ -188,6 +188,7 @@ impl Settings {
                 _ => Vec::new(),
             },
             switching: one.switching.then_some(true),
+            transitions: one.transitions.is_some().then_some(true),
             fields: {
                 let has = |kind: &FieldKind| one.fields.iter().any(|field| field.kind == *kind);
                 let asked: Vec<FieldKind> = FieldKind::ALL.into_iter().filter(has).collect();

@@ -42,6 +42,26 @@ pub(super) fn region(
     given.len() - 1
 }
 
+/// The number of the region that is either of two.
+pub(super) fn either(
+    reader: &Reader<'_>,
+    given: &mut Vec<Given>,
+    passage: &str,
+    [one, other]: [usize; 2],
+) -> usize {
+    let name = format!("{passage}_from_or_to");
+    if let Some(known) = given
+        .iter()
+        .position(|one| one.is_joined && one.name == name)
+    {
+        return known;
+    }
+    let text = format!("({}) or ({})", given[one].text, given[other].text);
+    let both = region(reader, given, passage, ("from", name), &text);
+    given[both].is_joined = true;
+    both
+}
+
 /// Reports what is wrong with a passage.
 pub(super) fn refuse(reader: &mut Reader<'_>, passage: &str, title: String, remedy: &str) {
     let diagnostic = Diagnostic::new(title).remedy(remedy);

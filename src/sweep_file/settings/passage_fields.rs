@@ -1,9 +1,9 @@
 //! The fields of passages: numbers over all states in which a passage may start.
 
-use super::given_regions::{Given, is_basin, refuse, region};
+use super::given_regions::{Given, either, is_basin, refuse};
 use crate::sweep_file::draft::{Draft, MethodKind, PassageDraft};
 use crate::sweep_file::reader::Reader;
-use crate::system::{FieldKind, FieldQuestion, PassageQuestion, Region};
+use crate::system::{FieldKind, FieldQuestion, Model, PassageQuestion, Region};
 
 /// A field of a passage, regions by their numbers.
 pub(super) struct GivenField {
@@ -12,9 +12,14 @@ pub(super) struct GivenField {
     until: usize,
     exits: Vec<usize>,
     part: Option<usize>,
+    axis: Option<usize>,
 }
 
 impl GivenField {
+    pub(super) fn is_reactive(&self) -> bool {
+        self.kind.is_reactive()
+    }
+
     pub(super) fn question(self, read: &[Region]) -> FieldQuestion {
         FieldQuestion {
             name: self.name,
@@ -26,14 +31,16 @@ impl GivenField {
                 .map(|part| read[part].clone())
                 .collect(),
             part: self.part,
+            axis: self.axis,
         }
     }
 }
 
-/// The fields of a passage: by the generator, and a committor between regions; `None` where they cannot be asked for.
+/// The fields of a passage of a model: by the generator, and a committor or transitions between regions; `None` where
+/// they cannot be asked for.
 pub(super) fn fields(
     reader: &mut Reader<'_>,
-    (draft, passage): (&Draft, &PassageDraft),
+    (draft, passage, model): (&Draft, &PassageDraft, &Model),
     given: &mut Vec<Given>,
     (until, exits, from): (usize, &[usize], Option<usize>),
 ) -> Option<Vec<GivenField>> {
@@ -59,6 +66,7 @@ pub(super) fn fields(
                 until,
                 exits,
                 part,
+                axis: None,
             });
         };
         match (kind, from) {
@@ -70,18 +78,38 @@ pub(super) fn fields(
                 }
             }
             (FieldKind::Committor, Some(from)) => {
-                let (one, other) = (&given[from].text, &given[until].text);
-                if is_basin(one) || is_basin(other) {
+                if is_basin(&given[from].text) || is_basin(&given[until].text) {
                     let title =
                         format!("passage `{name}` asks for a committor between basins of peaks");
                     refuse(reader, name, title, "give inequalities as `from` and `to`");
                     return None;
                 }
-                let either = format!("({one}) or ({other})");
-                let own = ("from", format!("{name}_from_or_to"));
-                let both = region(reader, given, name, own, &either);
-                given[both].is_joined = true;
+                let both = either(reader, given, name, [from, until]);
                 add(array("committor"), (both, &[from, until]), Some(1));
+            }
+            (FieldKind::ReactiveDensity | FieldKind::ReactiveCurrent, from) => {
+                let both = transitions(reader, (draft, passage), given, (until, from))?;
+                let exits = from.map_or_else(Vec::new, |from| vec![from, until]);
+                let mut add = |name, axis| {
+                    all.push(GivenField {
+                        name,
+                        kind,
+                        until: both,
+                        exits: exits.clone(),
+                        part: None,
+                        axis,
+                    });
+                };
+                if kind == FieldKind::ReactiveDensity {
+                    add(array("reactive_density"), None);
+                } else {
+                    for (number, axis) in model.axes.iter().enumerate() {
+                        add(
+                            array(&format!("reactive_current_{}", axis.name)),
+                            Some(number),
+                        );
+                    }
+                }
             }
             (FieldKind::Committor, _) => {
                 let title =
@@ -93,6 +121,41 @@ pub(super) fn fields(
         }
     }
     Some(all)
+}
+
+/// Either of the regions between which a passage has transitions: by the generator, from one inequality to another;
+/// `None` where they cannot be asked for.
+pub(super) fn transitions(
+    reader: &mut Reader<'_>,
+    (draft, passage): (&Draft, &PassageDraft),
+    given: &mut Vec<Given>,
+    (until, from): (usize, Option<usize>),
+) -> Option<usize> {
+    let name = passage.name.as_str();
+    let (title, remedy) = match from {
+        _ if draft.method.kind != MethodKind::Generator => (
+            format!(
+                "transitions between regions are worked out by `generator`, not by `{}`",
+                draft.method.kind.name()
+            ),
+            "set `method.kind = \"generator\"`, or leave `transitions` and reactive fields out",
+        ),
+        Some(from) if passage.exits.is_none() => {
+            if !is_basin(&given[from].text) && !is_basin(&given[until].text) {
+                return Some(either(reader, given, name, [from, until]));
+            }
+            (
+                format!("passage `{name}` asks for transitions between basins of peaks"),
+                "give inequalities as `from` and `to`",
+            )
+        }
+        _ => (
+            format!("passage `{name}` asks for transitions, and is not from one region to another"),
+            "give the two regions as `from` and `to`, such as `from = \"x < -0.5\"`",
+        ),
+    };
+    refuse(reader, name, title, remedy);
+    None
 }
 
 /// What arrays call a region of several that end a passage.

@@ -1,7 +1,7 @@
 //! Regions and questions of first passage as a file has them, with the place of everything that is wrong with them.
 
 use super::given_regions::{Given, diagnostic, is_basin, refuse, region};
-use super::passage_fields::{GivenField, fields};
+use super::passage_fields::{GivenField, fields, transitions};
 use crate::density::Observable;
 use crate::formula::language::check_name;
 use crate::sweep_file::diagnostic::Diagnostic;
@@ -71,6 +71,7 @@ pub(super) fn read(
                 exits,
                 start,
                 fields,
+                transitions,
             },
         )| PassageQuestion {
             name: passage.name.clone(),
@@ -86,6 +87,7 @@ pub(super) fn read(
                 GivenStart::Density => PassageStart::Density,
             },
             switching: passage.switching == Some(true),
+            transitions: transitions.map(|either| read[either].clone()),
             times: ascending(passage.times.as_ref()),
             quantiles: ascending(passage.quantiles.as_ref()),
         },
@@ -174,6 +176,8 @@ struct Ends {
     exits: Vec<usize>,
     start: GivenStart,
     fields: Vec<GivenField>,
+    /// Either of the regions of start and end, where transitions are asked for.
+    transitions: Option<usize>,
 }
 
 /// Where a passage starts.
@@ -253,12 +257,19 @@ fn ends(
         GivenStart::Region(from) => Some(from),
         GivenStart::State(_) | GivenStart::Density => None,
     };
-    let fields = fields(reader, (draft, passage), given, (until, &exits, from))?;
+    let of = (draft, passage, model);
+    let fields = fields(reader, of, given, (until, &exits, from))?;
+    let asked = passage.transitions == Some(true);
+    let transitions = match asked || fields.iter().any(GivenField::is_reactive) {
+        true => Some(transitions(reader, (draft, passage), given, (until, from))?),
+        false => None,
+    };
     Some(Ends {
         until,
         exits,
         start,
         fields,
+        transitions,
     })
 }
 

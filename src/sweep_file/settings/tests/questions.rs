@@ -56,6 +56,60 @@ fn rates_between_two_states_are_of_two_regions_by_the_generator() {
     assert!(state.contains("not from one region to another"), "{state}");
 }
 
+#[test]
+fn transitions_are_between_two_regions_by_the_generator_and_reactive_fields_have_their_numbers() {
+    let passage = |more: &str| {
+        let ends = "from = \"x < 1\", to = \"x > 8\"";
+        format!("{WALLED}[passage]\nout = {{ {ends}, {more} }}\n")
+    };
+    let of = |text: &str| {
+        let settings = parse(text, &[]).unwrap();
+        // Written and read again, everything is still there.
+        let again = parse(&settings.to_toml(), &[]).unwrap();
+        let [one, other] = [settings, again].map(|settings| {
+            let question = settings.family.questions.passages[0].clone();
+            let fields = question.fields.into_iter().map(|field| field.name);
+            (
+                question.transitions.map(|either| either.text().to_owned()),
+                fields.collect::<Vec<_>>(),
+            )
+        });
+        assert_eq!(one, other);
+        one
+    };
+    let either = Some("(x < 1) or (x > 8)".to_owned());
+    assert_eq!(
+        of(&passage("transitions = \"on\"")),
+        (either.clone(), Vec::new())
+    );
+    let fields = passage("fields = [\"reactive-current\", \"reactive-density\", \"committor\"]");
+    let names = [
+        "committor",
+        "reactive_density",
+        "reactive_current_x",
+        "reactive_current_v",
+    ];
+    let names = names.map(|name| format!("out_{name}")).to_vec();
+    assert_eq!(of(&fields), (either, names));
+    assert_eq!(of(&passage("fields = [\"committor\"]")).0, None);
+    let refused = |text: &str, sets: &[&str]| parse(text, sets).unwrap_err().to_string();
+    let asked = passage("transitions = \"on\"");
+    for text in [&asked, &fields] {
+        let sampled = refused(text, &["method.kind=monte-carlo"]);
+        assert!(
+            sampled.contains("by `generator`, not by `monte-carlo`"),
+            "{sampled}"
+        );
+    }
+    let state = refused(
+        &asked.replace("from = \"x < 1\"", "start = { x = 1, v = 0 }"),
+        &[],
+    );
+    assert!(state.contains("not from one region to another"), "{state}");
+    let basin = asked.replace("x < 1", "peak 1 of x");
+    assert!(refused(&basin, &[]).contains("between basins of peaks"));
+}
+
 /// A half line.
 const WALLED: &str = r#"
 [system.equations]
@@ -131,13 +185,14 @@ fn walls_stand_where_cells_end_and_are_written_again() {
 #[test]
 fn single_figures_of_what_is_asked_for_can_be_named() {
     let asked = "[spectrum]\nof = [\"v\"]\n\
-                 [passage]\nout = { from = \"x < 1\", to = \"x > 8\", fields = [\"committor\"] }\n";
+                 [passage]\nout = { from = \"x < 1\", to = \"x > 8\", fields = [\"committor\", \"reactive-current\"] }\n";
     let text = format!("{WALLED}{asked}");
     let drawn = |name: &str| parse(&text, &[&format!("figures.draw=[\"{name}\"]")]);
     for name in [
         "spectrum_v",
         "field_out_committor",
         "field_out_committor_1.5",
+        "field_out_reactive_current",
     ] {
         drawn(name).unwrap();
     }

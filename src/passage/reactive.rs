@@ -1,0 +1,320 @@
+//! Processes on their way from one region to another: transition paths, in the words of E and Vanden-Eijnden (J. Stat.
+//! Phys. 123, 503 (2006)).
+//!
+//! Outside of both regions, f is the steady state of those that were in the first one last: Q f = 0, with f the steady
+//! state on the border of the first region and zero on that of the second. Stencils that reach past a border read the
+//! polynomial through cells and through that value, which gives a source s and the generator of a process that ends at
+//! either border: Q f = -s. With q the probability to come to the second region next, f q is the density of those on
+//! their way, and what enters the second region per unit of time, Σ e f, is how often a transition happens. Grids and
+//! their differences are those of other numbers of passages (`timed.rs`).
+
+use std::sync::Arc;
+
+use super::cells::{PassageCells, cells};
+use super::exits::Exits;
+use super::field::{
+    FieldTarget, OnGrid, PassageField, TOLERANCE, greatest_beside, on_three_grids, with_changes,
+};
+use super::on_way::{Asked, Changed, FROM, Found, OnWay, TO};
+use super::solve::enclosed;
+use super::steady::{Steady, mass_in};
+use super::timed::WithError;
+use super::{KnownDensity, PassageError, dot};
+use crate::cancellation::Cancellation;
+use crate::generator::{
+    AbsorbingGenerator, Closure, Dissipation, GeneratorOptions, assemble_absorbing,
+};
+use crate::space::CellSpace;
+use crate::stationary::generator::{Absorbing, AbsorbingSolver, Expected, RateOptions};
+use crate::system::System;
+
+/// What is known of processes on their way from one region to another.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reactive {
+    /// Transitions per unit of time.
+    pub flux: WithError,
+    /// The same for each unit of time that the first region was the last one of the two.
+    pub rate: WithError,
+    /// Mean time from the last moment in the first region to the first one in the second.
+    pub duration: WithError,
+    /// Density of being on the way, which sums to the flux times the duration.
+    pub density: PassageField,
+    /// Components of the current along each axis; what crosses any border between the two regions is the flux.
+    pub current: Vec<PassageField>,
+}
+
+/// Processes on their way from the first part of a target to the second, of a system whose steady state on the cells of
+/// a sweep is `density`.
+///
+/// # Errors
+/// [`PassageError`].
+pub fn reactive(
+    (system, space): (&Arc<dyn System>, &CellSpace),
+    target: &FieldTarget,
+    density: KnownDensity<'_>,
+    (options, rates): (&GeneratorOptions, &RateOptions),
+    cancellation: &Cancellation,
+) -> Result<Reactive, PassageError> {
+    let [from, _] = &target.exits[..] else {
+        return Err(PassageError::Nowhere);
+    };
+    let question = Question {
+        asked: Asked {
+            system,
+            space,
+            target,
+        },
+        steady: Steady::new(space, density.unknowns),
+        changes: density.changes.map(|changes| Steady::new(space, changes)),
+        masses: mass_in(space, &density, from)?,
+        options,
+        rates: RateOptions {
+            tolerance: TOLERANCE,
+            ..*rates
+        },
+        cancellation,
+    };
+    let [finest, coarse, coarsest] = on_three_grids(|factor| question.on_grid(factor))?;
+    let others = [&coarse, &coarsest];
+    let numbers = others.map(|other| &other.numbers.on_grid);
+    let numbers = finest.numbers.with_errors(numbers, |errors| errors);
+    let [flux, rate, duration] = [0, 1, 2].map(|place| numbers[place]);
+    let beside = |errors: Vec<f64>| greatest_beside(space, &errors);
+    let field = |place: usize| {
+        let others = others.map(|other| &other.fields[place].on_grid);
+        finest.fields[place].with_errors(others, beside)
+    };
+    let mut fields = (0..finest.fields.len()).map(|place| {
+        let is_density = place == 0;
+        let least = if is_density { 0.0 } else { f64::NEG_INFINITY };
+        question.whole(field(place), least)
+    });
+    let density = fields.next().ok_or(PassageError::Start)?;
+    let current = fields.collect();
+    Ok(Reactive {
+        flux,
+        rate,
+        duration,
+        density,
+        current,
+    })
+}
+
+/// What one grid gives: flux, rate and duration; the density, and the current along each axis.
+struct Solved {
+    numbers: Found,
+    fields: Vec<Found>,
+}
+
+/// Transitions with what they are solved with.
+struct Question<'a> {
+    asked: Asked<'a>,
+    steady: Steady<'a>,
+    changes: Option<Steady<'a>>,
+    /// The mass in the first region, and its error.
+    masses: WithError,
+    options: &'a GeneratorOptions,
+    rates: RateOptions,
+    cancellation: &'a Cancellation,
+}
+
+impl Question<'_> {
+    fn on_grid(&self, factor: f64) -> Result<Solved, PassageError> {
+        let until = &self.asked.target.until;
+        let found = cells(self.asked.system.as_ref(), self.asked.space, until, factor)?;
+        let enclosed = enclosed(self.asked.system, &found);
+        let assemble = |dissipation, closure| {
+            let scheme = (dissipation, closure);
+            assemble_absorbing(&enclosed, &found.space, until, self.options, scheme)
+        };
+        let generators = [
+            assemble(Dissipation::Full, Closure::Fourth)?,
+            assemble(Dissipation::Half, Closure::Fourth)?,
+            assemble(Dissipation::Full, Closure::Third)?,
+        ];
+        let [full, half, third] = &generators;
+        let exits = Exits::new(&self.asked.target.exits, &found.space);
+        let source = |generator: &AbsorbingGenerator, steady: &Steady<'_>| {
+            self.source((&found, generator), &exits, steady)
+        };
+        let start = source(full, &self.steady);
+        let is_left = start.iter().any(|&rate| rate > 0.0) && start.iter().sum::<f64>() > 0.0;
+        if full.ends.iter().all(|&rate| rate == 0.0) || !is_left {
+            return Err(PassageError::Never);
+        }
+        let matrix = full.matrix();
+        let space = &found.space;
+        let mut solver = AbsorbingSolver::new(space, self.rates, self.cancellation);
+        let (stage, own) = solver.stage(&matrix, &full.ends, &start)?;
+        let by_other = |other: &AbsorbingGenerator| {
+            let mut left = source(other, &self.steady);
+            for &(row, column, rate) in &other.rates {
+                left[row] += rate * own[column];
+            }
+            left
+        };
+        let steady = match self.changes.as_ref().filter(|_| factor == 1.0) {
+            Some(changes) => solver.times(&stage, &source(full, changes))?,
+            None => vec![0.0; own.len()],
+        };
+        let last = Changed {
+            halved: solver.times(&stage, &by_other(half))?,
+            border: solver.times(&stage, &by_other(third))?,
+            own,
+            steady,
+        };
+        let gain = |generator: &AbsorbingGenerator| exits.rates(&generator.endings).swap_remove(TO);
+        let (next, changes) = with_changes(&mut solver, &stage, [full, half, third], gain)?;
+        let entering = [full, half, third].map(gain);
+        let numbers = self.flux((&stage, &start), &entering, &last, &next);
+        let on_way = OnWay::new(&self.asked, &found, full, (last, next, changes));
+        let numbers = self.numbers(numbers, &on_way, full, &exits);
+        Ok(Solved {
+            numbers,
+            fields: on_way.fields(&self.asked),
+        })
+    }
+
+    /// Rates at which processes that were in the first region last come into the cells, of a steady state.
+    fn source(
+        &self,
+        (found, generator): (&PassageCells, &AbsorbingGenerator),
+        exits: &Exits<'_>,
+        steady: &Steady<'_>,
+    ) -> Vec<f64> {
+        let (space, dimension) = (&found.space, found.space.dimension());
+        let mut source = vec![0.0; space.n_cells()];
+        for border in &generator.on_border {
+            let state = &border.state[..dimension];
+            if exits.part_at(state) == Some(FROM) {
+                let value = steady.at(state);
+                let rates = border.rates.iter();
+                rates.for_each(|&(cell, rate)| source[cell] += rate * value);
+            }
+        }
+        // What the drift carries in through ends of the cells that are borders.
+        for (index, axis) in space.axes().iter().enumerate() {
+            let ends = [(0, axis.from(), 1.0), (axis.count() - 1, axis.to(), -1.0)];
+            for ((last, end, inward), _) in ends
+                .into_iter()
+                .zip(found.borders[index])
+                .filter(|one| one.1)
+            {
+                for cell in (0..space.n_cells()).filter(|&cell| space.position(cell, index) == last)
+                {
+                    let mut state = space.node(cell);
+                    state[index] = end;
+                    let drift = inward * self.asked.system.drift_at(0.0, &state)[index];
+                    if drift > 0.0 && generator.kept[cell] && exits.part_at(&state) == Some(FROM) {
+                        let others = space
+                            .axes()
+                            .iter()
+                            .enumerate()
+                            .filter(|(other, _)| *other != index);
+                        let width: f64 = others
+                            .map(|(other, axis)| axis.node_stretch(space.position(cell, other)))
+                            .product();
+                        source[cell] += drift * width * steady.at(&state);
+                    }
+                }
+            }
+        }
+        source
+    }
+
+    /// Transitions per unit of time. What solves of either side leave is in it to second order.
+    fn flux(
+        &self,
+        (stage, start): (&Absorbing<'_>, &[f64]),
+        [own, half, third]: &[Vec<f64>; 3],
+        last: &Changed<Vec<f64>>,
+        next: &Expected,
+    ) -> Changed<f64> {
+        let left = next.over(start) + stage.of_balance(&stage.balance(&last.own), next, &last.own);
+        let plain = dot(own, &last.own);
+        let by = |entering: &[f64], change: &[f64]| {
+            dot(entering, change) + dot(entering, &last.own) - plain
+        };
+        Changed {
+            own: plain + left,
+            halved: by(half, &last.halved),
+            border: by(third, &last.border),
+            steady: dot(own, &last.steady),
+        }
+    }
+
+    /// Flux, rate and duration.
+    fn numbers(
+        &self,
+        flux: Changed<f64>,
+        on_way: &OnWay<'_>,
+        full: &AbsorbingGenerator,
+        exits: &Exits<'_>,
+    ) -> Found {
+        let [weights, others] = &full.weights;
+        let dimension = self.asked.space.dimension();
+        // Those that were in the first region last, outside of it: they are not zero on its border.
+        let on_border = |way: usize, steady: &Steady<'_>| -> f64 {
+            let borders = full
+                .on_border
+                .iter()
+                .map(|one| (&one.state[..dimension], one.sum[way]));
+            let own = borders.filter(|(state, _)| exits.part_at(state) == Some(FROM));
+            own.map(|(state, weight)| weight * steady.at(state)).sum()
+        };
+        let last = &on_way.last;
+        let outside = dot(weights, &last.own) + on_border(0, &self.steady);
+        let second = dot(others, &last.own) + on_border(1, &self.steady);
+        let of_steady = self
+            .changes
+            .as_ref()
+            .map_or(0.0, |changes| on_border(0, changes));
+        let mass = Changed {
+            own: self.masses.0 + outside,
+            halved: dot(weights, &last.halved),
+            border: dot(weights, &last.border).abs() + (second - outside).abs(),
+            steady: (dot(weights, &last.steady) + of_steady).abs() + self.masses.1,
+        };
+        let sum = |of: &[f64]| dot(weights, of);
+        let density = &on_way.on_way;
+        let way = Changed {
+            own: sum(&density.own),
+            halved: sum(&density.halved),
+            border: sum(&density.border).abs()
+                + (dot(others, &density.own) - sum(&density.own)).abs(),
+            steady: sum(&density.steady),
+        };
+        let numbers = |flux: f64, mass: f64, way: f64| [flux, flux / mass, way / flux];
+        // The density on the way and what it is of have lost what dissipation does already.
+        let (flux_own, mass_own) = (flux.own + 2.0 * flux.halved, mass.own + 2.0 * mass.halved);
+        let own = numbers(flux_own, mass_own, way.own);
+        let change = |flux: f64, mass: f64, way_change: f64| {
+            let rate = (flux - own[1] * mass) / mass_own;
+            [flux, rate, (way_change - own[2] * flux) / flux_own]
+        };
+        let known = |all: [f64; 3]| all.map(Some).to_vec();
+        let on_grid = OnGrid {
+            values: known(own),
+            halved: known(change(flux.halved, mass.halved, way.halved)),
+            border: known(change(flux.border, mass.border, way.border)),
+        };
+        Found::new(
+            on_grid,
+            change(flux.steady, mass.steady, way.steady).to_vec(),
+        )
+    }
+
+    /// A field with what it is inside the regions, where nothing is on its way.
+    fn whole(&self, both: Vec<WithError>, least: f64) -> PassageField {
+        let one = |(cell, (value, error)): (usize, WithError)| {
+            let state = self.asked.space.centre(cell);
+            match value.is_nan() {
+                true if self.asked.target.until.at(&state) < 0.0 => (0.0, 0.0),
+                true => (f64::NAN, f64::NAN),
+                false => (value.max(least), error),
+            }
+        };
+        let (values, errors) = both.into_iter().enumerate().map(one).unzip();
+        PassageField { values, errors }
+    }
+}
