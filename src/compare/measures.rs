@@ -5,13 +5,13 @@ use crate::continuation::Measure;
 
 /// A number of the steady state by the generator and by Monte Carlo, each with its error.
 #[derive(Debug, Clone, PartialEq)]
-pub struct MeasurePair {
+pub(crate) struct MeasurePair {
     /// Its name, as in the tables of a sweep.
-    pub name: String,
+    pub(crate) name: String,
     /// By the generator.
-    pub generator: (f64, f64),
+    pub(crate) generator: (f64, f64),
     /// By Monte Carlo.
-    pub monte_carlo: (f64, f64),
+    pub(crate) monte_carlo: (f64, f64),
 }
 
 impl MeasurePair {

@@ -43,7 +43,7 @@ pub(super) const MOST_TIMES: u8 = 3;
 
 impl CheckedBy {
     /// All of them.
-    pub const ALL: [Self; MOST_TIMES as usize + 1] = [
+    pub(crate) const ALL: [Self; MOST_TIMES as usize + 1] = [
         Self::FinerCells(1),
         Self::FinerCells(2),
         Self::FinerCells(MOST_TIMES),
@@ -51,7 +51,7 @@ impl CheckedBy {
     ];
 
     /// The words used in tables.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::FinerCells(..=1) => "finer cells",
             Self::FinerCells(2) => "finer cells, twice refined",

@@ -277,7 +277,7 @@ pub enum ShiftedQuantity {
 
 impl Finding {
     /// Code and axis. Findings that share them say the same thing with other numbers, and are told once.
-    pub fn kind(&self) -> (&'static str, Option<usize>) {
+    pub(crate) fn kind(&self) -> (&'static str, Option<usize>) {
         let (code, axis, _) = self.parts();
         (code, axis)
     }

@@ -38,7 +38,7 @@ pub struct MeasureColumn {
 
 impl MeasureKind {
     /// Name of the number that is of an axis, a quantity or a density; of all of them where `of` is empty.
-    pub fn name(&self, of: &str) -> String {
+    pub(crate) fn name(&self, of: &str) -> String {
         match of {
             "" => self.word.to_owned(),
             of if self.follows => format!("{of}_{}", self.word),

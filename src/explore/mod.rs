@@ -1,7 +1,7 @@
 //! The explorer: one page that slides along a parameter and shows the densities, what was found in them and where it
 //! changes.
 //!
-//! [`StoredPage`] puts a finished sweep into one file that needs no network: its densities are packed ([`Packed`]) and
+//! [`StoredPage`] puts a finished sweep into one file that needs no network: its densities are packed (`pack.rs`) and
 //! stand in the page itself. [`LiveServer`] serves the same page to the browsers of this machine and solves while one
 //! moves its sliders. The sources of the page are the files in `page/`; they are put together here and run nowhere
 //! else.
@@ -45,7 +45,6 @@ mod scene;
 mod server;
 mod stored;
 
-pub use pack::{Packed, Scale};
 pub use server::LiveServer;
 pub use stored::StoredPage;
 

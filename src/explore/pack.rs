@@ -10,7 +10,7 @@ use serde::Serialize;
 /// How values lie on the steps of a quantisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Scale {
+pub(crate) enum Scale {
     /// Evenly.
     Linear,
     /// Their square roots do, with the value's sign: small values keep more digits.
@@ -19,19 +19,19 @@ pub enum Scale {
 
 /// Frames of equally many values, one frame a parameter value, in few bytes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Packed {
+pub(crate) struct Packed {
     /// The largest magnitude among all values.
-    pub top: f64,
+    pub(crate) top: f64,
     /// Number of steps from zero to `top`.
-    pub levels: u32,
+    pub(crate) levels: u32,
     /// How values lie on them.
-    pub scale: Scale,
+    pub(crate) scale: Scale,
     /// Values a frame.
-    pub cells: usize,
+    pub(crate) cells: usize,
     /// Number of frames.
-    pub frames: usize,
+    pub(crate) frames: usize,
     /// Distances from the line, zigzag coded, the lowest bytes of all first, deflated (zlib).
-    pub bytes: Vec<u8>,
+    pub(crate) bytes: Vec<u8>,
 }
 
 /// The largest step between neighbouring frames, as a multiple of the one before, over which the line is followed;
@@ -44,7 +44,7 @@ impl Packed {
     /// Packs frames that belong to the parameter values `at`, with steps of the largest magnitude over 2^`bits` - 1;
     /// `bits` from 1 to 28. What is not finite becomes zero. Frames that are longer than the first are cut, shorter
     /// ones filled with zeros.
-    pub fn new(frames: &[&[f64]], at: &[f64], scale: Scale, bits: u32) -> Self {
+    pub(crate) fn new(frames: &[&[f64]], at: &[f64], scale: Scale, bits: u32) -> Self {
         let cells = frames.first().map_or(0, |frame| frame.len());
         let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
         let values = frames.iter().flat_map(|frame| frame.iter());

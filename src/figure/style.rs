@@ -58,7 +58,7 @@ impl FigureWidth {
     }
 
     /// The width of that name.
-    pub fn parse(name: &str) -> Option<Self> {
+    pub(crate) fn parse(name: &str) -> Option<Self> {
         Self::NAMED
             .into_iter()
             .find(|width| width.name() == Some(name))

@@ -55,10 +55,11 @@ pub use derivative::assemble_derivative;
 pub use grading::automatic_grading;
 pub(crate) use masses::summed_to_walls;
 pub use masses::{cell_masses, unknown_moments};
-pub(crate) use one_axis::exponent_at;
-pub use one_axis::{End, OneAxis, one_axis, profile};
+pub(crate) use one_axis::{End, exponent_at};
+pub use one_axis::{OneAxis, one_axis, profile};
 pub(crate) use resolution::{Resolution, resolution};
-pub use scheme::{AdvectiveScheme, Dissipation};
+pub use scheme::AdvectiveScheme;
+pub(crate) use scheme::Dissipation;
 pub(crate) use shared_noise::{add_shared_noise, at_nodes};
 pub(crate) use spectral_viscosity::add_spectral_viscosity;
 

@@ -18,7 +18,7 @@ pub(super) const DAMPING_BESIDE_MODES: f64 = 0.5;
 
 /// How much of the advective scheme's dissipation is kept. What two shares differ by is an error of the cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Dissipation {
+pub(crate) enum Dissipation {
     /// All of it.
     Full,
     /// Half of it.

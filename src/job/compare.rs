@@ -52,7 +52,7 @@ impl<'a> CompareJob<'a> {
     }
 
     /// What was found, with what its tables need beside it.
-    pub fn run<'r>(&'r self, found: &'r Comparison) -> ComparedRun<'r> {
+    pub(crate) fn run<'r>(&'r self, found: &'r Comparison) -> ComparedRun<'r> {
         ComparedRun {
             comparison: found,
             sweep: &self.resolved,

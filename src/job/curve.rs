@@ -71,7 +71,7 @@ impl<'a> CurveJob<'a> {
     }
 
     /// The row that the first curve starts from.
-    pub fn row(&self) -> FirstRow<'a> {
+    pub(crate) fn row(&self) -> FirstRow<'a> {
         self.row
     }
 

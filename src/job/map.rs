@@ -23,7 +23,7 @@ impl<'a> MapJob<'a> {
     }
 
     /// The map of its shards.
-    pub fn merged(sweep: &'a Sweep, shards: &'a [MapShard]) -> Self {
+    pub(crate) fn merged(sweep: &'a Sweep, shards: &'a [MapShard]) -> Self {
         let shards = Some(shards);
         Self { sweep, shards }
     }

@@ -58,7 +58,7 @@ impl<'a> SweepJob<'a> {
     }
 
     /// The whole sweep of which so many shards have solved this; it solves what they have left open.
-    pub fn merged(sweep: &'a Sweep, shards: usize, gathered: Gathered) -> Self {
+    pub(crate) fn merged(sweep: &'a Sweep, shards: usize, gathered: Gathered) -> Self {
         Self::of(sweep, Part::Merged(shards, gathered))
     }
 

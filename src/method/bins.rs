@@ -28,7 +28,7 @@ const SCALES: RangeInclusive<f64> = 1e-100..=1e100;
 
 /// Why there is no range.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum BinsError {
+pub(crate) enum BinsError {
     /// The formula has no value somewhere in Ω.
     #[error("`{quantity}` is {value} at {state}")]
     NotFinite {

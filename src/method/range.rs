@@ -28,7 +28,7 @@ const MOST_STEPS: usize = 2_000_000;
 
 /// Why no ranges were found.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum RangeError {
+pub(crate) enum RangeError {
     /// However wide the box, trajectories leave it.
     #[error("no range holds the density: free trajectories leave every")]
     RunsAway {

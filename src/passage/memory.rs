@@ -8,7 +8,7 @@ use crate::stationary::generator::FactorMemory;
 
 /// What the passages of one question leave, to be handed to the same question at the next value.
 #[derive(Default)]
-pub struct PassageMemory {
+pub(crate) struct PassageMemory {
     /// Of the sweep's cells, and of the fewer cells by which errors are made.
     pub(super) grids: [GridMemory; 3],
 }

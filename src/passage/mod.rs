@@ -76,9 +76,10 @@ mod timed;
 
 pub use density_start::KnownDensity;
 pub use field::{FieldTarget, PassageField, field};
-pub use memory::PassageMemory;
+pub(crate) use memory::PassageMemory;
 pub use reactive::{Reactive, reactive};
-pub use timed::{Timed, WithError, timed, timed_from};
+pub(crate) use timed::timed_from;
+pub use timed::{Timed, WithError, timed};
 
 use crate::generator::{GeneratorError, levels};
 use crate::space::{CellSpace, SpaceError};

@@ -73,7 +73,7 @@ pub fn timed(
 ///
 /// # Errors
 /// [`PassageError`].
-pub fn timed_from(
+pub(crate) fn timed_from(
     (system, space): (&Arc<dyn System>, &CellSpace),
     passage: &Passage,
     density: Option<KnownDensity<'_>>,

@@ -71,7 +71,7 @@ impl JobFolder {
     /// # Errors
     /// [`RunError::Place`], [`RunError::InUse`], [`RunError::NotOurs`], [`RunError::Read`], [`RunError::Write`]; then
     /// the folder is as it was.
-    pub fn open(home: &Path, layout: Layout, goes_on: bool) -> Result<Self, RunError> {
+    pub(crate) fn open(home: &Path, layout: Layout, goes_on: bool) -> Result<Self, RunError> {
         check_place(home)?;
         std::fs::create_dir_all(home).map_err(|source| RunError::Write {
             path: home.to_owned(),

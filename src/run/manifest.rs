@@ -9,7 +9,7 @@ use crate::sweep_file::SweepText;
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Ending {
+pub(crate) enum Ending {
     /// Still running, or killed.
     Running,
     /// All points done.

@@ -116,7 +116,7 @@ pub(crate) use bifurcations::{
 pub(crate) use checksums::Checked;
 pub(crate) use clean::{Removable, Stays, removable_runs, remove_run};
 pub(crate) use codimension::curve_files;
-pub use compare::ComparedRun;
+pub(crate) use compare::ComparedRun;
 pub(crate) use compare::{compare_files, compare_tables};
 pub use curve::FOLDER as CURVES;
 pub(crate) use curve::{curve_name, end_labels, point_labels};
@@ -131,8 +131,9 @@ pub(crate) use job_folder::{check_place, clear_after_kill};
 pub use journal::{Journal, JournalledSource};
 pub use layout::Layout;
 pub(crate) use looks::looks_file;
+pub(crate) use manifest::Ending;
 pub(crate) use manifest::Manifest;
-pub use manifest::{Ending, PhaseSeconds};
+pub use manifest::PhaseSeconds;
 pub(crate) use map::map_files;
 pub(crate) use map_shards::{MapShards, map_shard_file};
 pub use names::check_names;
@@ -145,7 +146,7 @@ pub use sentences::finding_in_words;
 #[cfg(feature = "cli")]
 pub(crate) use sentences::fixed_point_in_words;
 pub(crate) use shards::shard_folder;
-pub use shards::{Gathered, Shards};
+pub(crate) use shards::{Gathered, Shards};
 pub(crate) use staged::StagedRun;
 pub use stored_run::StoredRun;
 pub(crate) use summary::find_runs;

@@ -93,7 +93,7 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// An error in the input as a whole.
-    pub fn new(title: impl Into<String>) -> Self {
+    pub(crate) fn new(title: impl Into<String>) -> Self {
         Self {
             title: title.into(),
             place: None,
@@ -113,7 +113,11 @@ impl Diagnostic {
     }
 
     /// Where it stands, if that is known, with a few words beside the caret.
-    pub fn at<'p>(mut self, place: impl Into<Option<&'p Place>>, label: impl Into<String>) -> Self {
+    pub(crate) fn at<'p>(
+        mut self,
+        place: impl Into<Option<&'p Place>>,
+        label: impl Into<String>,
+    ) -> Self {
         if let Some(place) = place.into() {
             self.place = Some(place.clone());
             self.label = label.into();
@@ -135,7 +139,7 @@ impl Diagnostic {
     }
 
     /// What to do.
-    pub fn remedy(mut self, words: impl Into<String>) -> Self {
+    pub(crate) fn remedy(mut self, words: impl Into<String>) -> Self {
         self.remedy = Some(words.into());
         self
     }

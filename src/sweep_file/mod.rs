@@ -74,4 +74,4 @@ pub use settings::{
     AxisSettings, BinSettings, CurveSettings, Grade, MapSettings, Modes, ModesOf, Settings,
 };
 pub use sweep::{SolveError, Sweep, WrapSource};
-pub use text::SweepText;
+pub(crate) use text::SweepText;

@@ -70,7 +70,7 @@ impl Report {
     }
 
     /// How many errors there are, in words.
-    pub fn count(&self) -> String {
+    pub(crate) fn count(&self) -> String {
         match self.diagnostics.len() + self.further {
             1 => "1 error".to_owned(),
             errors => format!("{errors} errors"),

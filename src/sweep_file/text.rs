@@ -12,13 +12,13 @@ pub(super) const MOST_BYTES: usize = 1_000_000;
 
 /// A sweep file word for word, as a person typed it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct SweepText {
+pub(crate) struct SweepText {
     /// Path of the file as it was given.
-    pub file: String,
+    pub(crate) file: String,
     /// Its text.
-    pub text: String,
+    pub(crate) text: String,
     /// What was set on top of it, each as `KEY=VALUE`, in their order.
-    pub set: Vec<String>,
+    pub(crate) set: Vec<String>,
 }
 
 /// A text, or the beginning of one that is too long.

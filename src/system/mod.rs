@@ -68,10 +68,11 @@ pub use path::Path;
 pub(crate) use quantity::AtPhase;
 pub use quantity::{BoundQuantity, Quantity, QuantityError, QuantityFault, quantities};
 pub use questions::{ExponentMethod, Questions};
-pub use region::{Basin, Region, RegionError, RegionFault, regions};
+pub(crate) use region::Basin;
+pub use region::{Region, RegionError, RegionFault, regions};
 pub use spectrum::{Band, Fluctuating, Sides, SpectrumQuestion};
 pub(crate) use symmetry::{proved_symmetry, symmetry_over_a_period};
-pub use tangent::TangentFault;
+pub(crate) use tangent::TangentFault;
 pub(crate) use tangent::{HALF_TURN, Tangent};
 pub(crate) use typed::FormulaHazard;
 pub use typed::{

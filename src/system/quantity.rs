@@ -293,7 +293,7 @@ impl Quantity {
     }
 
     /// Its name as a symbol with `_{}`: what follows the first `_` is lowered.
-    pub fn symbol(&self) -> &str {
+    pub(crate) fn symbol(&self) -> &str {
         &self.symbol
     }
 

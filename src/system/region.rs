@@ -26,11 +26,11 @@ pub struct Region {
 
 /// The basin of a peak of the marginal density of an axis: up to the valleys beside it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Basin {
+pub(crate) struct Basin {
     /// The peak, counted from 1 along the axis.
-    pub peak: usize,
+    pub(crate) peak: usize,
     /// The axis.
-    pub axis: usize,
+    pub(crate) axis: usize,
 }
 
 impl Basin {
@@ -53,7 +53,7 @@ impl Basin {
 
 impl Region {
     /// The basin that it is, which has no level of its own: see [`Region::between`].
-    pub fn basin(&self) -> Option<Basin> {
+    pub(crate) fn basin(&self) -> Option<Basin> {
         self.basin
     }
 

@@ -94,7 +94,7 @@ pub struct SpectrumQuestion {
 
 impl SpectrumQuestion {
     /// Name of a pair in tables: `x`, or `x, y` of a cross spectrum.
-    pub fn name(&self, (one, other): (usize, usize)) -> String {
+    pub(crate) fn name(&self, (one, other): (usize, usize)) -> String {
         let name = |number: usize| self.observables[number].name();
         match one == other {
             true => name(one).to_owned(),

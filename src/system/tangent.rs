@@ -27,7 +27,7 @@ pub(crate) const HALF_TURN: (f64, f64) = (-FRAC_PI_2, FRAC_PI_2);
 
 /// Why there is no equation of small deviations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum TangentFault {
+pub(crate) enum TangentFault {
     /// Modes give exponents along densities on one axis and on two.
     #[error(
         "the system has {axes} axes; modes give exponents along a density on one axis and on two"

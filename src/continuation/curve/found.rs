@@ -85,7 +85,7 @@ impl EndReason {
     /// The letters of its label, as AUTO has them: `EP` an end of the box, `CL` closed, `MX` no density or no
     /// convergence; `CP` cusp, `DS` degenerate split, `DK` degenerate kink, `KC` corner at a kink, `FL` feature lost,
     /// `SP` singular point, `UN` unfinished.
-    pub fn prefix(&self) -> &'static str {
+    pub(crate) fn prefix(&self) -> &'static str {
         match self {
             Self::Border(_) => "EP",
             Self::Closed => "CL",
@@ -291,7 +291,7 @@ words! {
 
 impl CodimensionTwoKind {
     /// The letters of its label.
-    pub fn prefix(self) -> &'static str {
+    pub(crate) fn prefix(self) -> &'static str {
         match self {
             Self::Cusp => "CP",
             Self::DegenerateSplit => "DS",

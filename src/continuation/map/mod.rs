@@ -34,7 +34,7 @@ mod trace;
 pub use found::{MapNode, MapWork, RegimeMap, RegionSample, Untraced, UntracedChange};
 pub(crate) use regions::{FloodedRegion, Seed, flood};
 pub use regions::{Region, RegionPicture};
-pub use shards::{MapChange, MapShard};
+pub(crate) use shards::{MapChange, MapShard};
 pub(crate) use states::{PlaneState, plane_states};
 
 use super::curve::{Curve, CurveOptions, LevelCurve, Plane, agree};

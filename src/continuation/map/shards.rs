@@ -9,27 +9,27 @@ use crate::topology::IndicatorKind;
 /// A change of signature between two neighbouring nodes. Places are shares of the sides of the box.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct MapChange {
+pub(crate) struct MapChange {
     /// The observable, by its place in [`Subject::observables`](crate::continuation::Subject::observables).
-    pub observable: usize,
+    pub(crate) observable: usize,
     /// The two nodes.
-    pub ends: [[f64; 2]; 2],
+    pub(crate) ends: [[f64; 2]; 2],
     /// The indicator that is zero between them, where it is in the density, and about where the zero is; `None` where
     /// no indicator tells.
-    pub zero: Option<(IndicatorKind, Vec<f64>, [f64; 2])>,
+    pub(crate) zero: Option<(IndicatorKind, Vec<f64>, [f64; 2])>,
 }
 
 /// What a shard of a map has found.
 #[derive(Debug, Clone, PartialEq)]
-pub struct MapShard {
+pub(crate) struct MapShard {
     /// Which one.
-    pub shard: Shard,
+    pub(crate) shard: Shard,
     /// Its nodes, those of the rows at its borders included.
-    pub nodes: Vec<MapNode>,
+    pub(crate) nodes: Vec<MapNode>,
     /// The changes between them.
-    pub changes: Vec<MapChange>,
+    pub(crate) changes: Vec<MapChange>,
     /// Whether it was interrupted before it was complete.
-    pub interrupted: bool,
+    pub(crate) interrupted: bool,
 }
 
 /// What was found as changes.

@@ -42,7 +42,7 @@ impl Interval {
     }
 
     /// high - low.
-    pub fn width(self) -> f64 {
+    pub(crate) fn width(self) -> f64 {
         self.high - self.low
     }
 

@@ -9,7 +9,7 @@ use crate::formula::arithmetic::{Binary, Unary};
 
 /// Makes new expressions of a graph; see [`Graph::build`].
 #[derive(Debug)]
-pub struct Builder<'a> {
+pub(crate) struct Builder<'a> {
     graph: &'a mut Graph,
     full: bool,
 }
@@ -48,7 +48,7 @@ impl<'a> Builder<'a> {
     }
 
     /// A number. Infinities and NaN, which no formula can write, become quotients by zero.
-    pub fn constant(&mut self, value: f64) -> Expression {
+    pub(crate) fn constant(&mut self, value: f64) -> Expression {
         if value.is_finite() {
             return self.intern(Node::Constant(Number(value.to_bits())));
         }
@@ -63,7 +63,7 @@ impl<'a> Builder<'a> {
     }
 
     /// A state, a parameter or time.
-    pub fn symbol(&mut self, symbol: Symbol) -> Expression {
+    pub(crate) fn symbol(&mut self, symbol: Symbol) -> Expression {
         self.intern(Node::Symbol(symbol))
     }
 
@@ -232,7 +232,7 @@ impl<'a> Builder<'a> {
     }
 
     /// aᵇ.
-    pub fn power(&mut self, a: Expression, b: Expression) -> Expression {
+    pub(crate) fn power(&mut self, a: Expression, b: Expression) -> Expression {
         let Some(exponent) = self.constant_of(b) else {
             return self.intern(Node::Binary(Binary::Power, a, b));
         };

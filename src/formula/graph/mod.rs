@@ -1,7 +1,7 @@
 //! Expressions as nodes of one graph: every subexpression is kept once, however often it is written.
 //!
 //! A node's operands always stand before it, so that every pass over a graph is a loop and never a recursion. New
-//! nodes are made by a [`Builder`], which simplifies where that does not change a single bit of any value.
+//! nodes are made by a `Builder`, which simplifies where that does not change a single bit of any value.
 
 mod builder;
 mod derivative;
@@ -16,7 +16,7 @@ use std::collections::HashMap;
 use crate::formula::arithmetic::{Binary, Unary};
 use crate::formula::limits;
 
-pub use builder::Builder;
+pub(crate) use builder::Builder;
 pub use derivative::Derivative;
 pub(crate) use evaluate::Evaluator;
 pub use evaluate::Point;
@@ -50,18 +50,18 @@ impl Expression {
 
 /// A finite number that is compared by its bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Number(u64);
+pub(crate) struct Number(u64);
 
 impl Number {
     /// The number.
-    pub fn value(self) -> f64 {
+    pub(crate) fn value(self) -> f64 {
         f64::from_bits(self.0)
     }
 }
 
 /// What an expression is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Node {
+pub(crate) enum Node {
     /// A number.
     Constant(Number),
     /// A state, a parameter or time.
@@ -153,7 +153,10 @@ impl Graph {
     ///
     /// # Errors
     /// [`TooLarge`] when the graph would outgrow its bound; it is then as it was before.
-    pub fn build<T>(&mut self, make: impl FnOnce(&mut Builder<'_>) -> T) -> Result<T, TooLarge> {
+    pub(crate) fn build<T>(
+        &mut self,
+        make: impl FnOnce(&mut Builder<'_>) -> T,
+    ) -> Result<T, TooLarge> {
         let before = self.nodes.len();
         let mut builder = Builder::new(self);
         let made = make(&mut builder);

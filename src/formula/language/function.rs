@@ -68,7 +68,7 @@ impl Function {
     }
 
     /// All names of functions, other spellings included.
-    pub fn names() -> impl Iterator<Item = &'static str> {
+    pub(crate) fn names() -> impl Iterator<Item = &'static str> {
         SPELLINGS.iter().map(|(name, _)| *name)
     }
 

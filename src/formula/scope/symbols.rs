@@ -176,7 +176,7 @@ impl Symbols {
     }
 
     /// The name of a symbol, as given.
-    pub fn name(&self, symbol: Symbol) -> &str {
+    pub(crate) fn name(&self, symbol: Symbol) -> &str {
         let name = match symbol {
             Symbol::State(state) => self.states.get(state),
             Symbol::Parameter(number) => self.parameters.get(number),

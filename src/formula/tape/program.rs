@@ -51,7 +51,7 @@ impl Scope {
 
 impl Program {
     /// Compiles expressions of a graph with so many states and parameters.
-    pub fn new(
+    pub(crate) fn new(
         graph: &Graph,
         expressions: &[Expression],
         states: usize,

@@ -54,7 +54,7 @@ impl Tape {
     }
 
     /// The value of an expression that depends on neither state nor time.
-    pub fn constant(&self, output: usize) -> Option<f64> {
+    pub(crate) fn constant(&self, output: usize) -> Option<f64> {
         self.fixed.get(output).copied().flatten()
     }
 

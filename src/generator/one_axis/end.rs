@@ -22,7 +22,7 @@ const PLACES: usize = 8;
 
 /// An end of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum End {
+pub(crate) enum End {
     /// Where the axis begins.
     Lower,
     /// Where it ends.
@@ -31,10 +31,10 @@ pub enum End {
 
 impl End {
     /// Both.
-    pub const ALL: [Self; 2] = [Self::Lower, Self::Upper];
+    pub(crate) const ALL: [Self; 2] = [Self::Lower, Self::Upper];
 
     /// Its coordinate.
-    pub fn of(self, axis: &Axis) -> f64 {
+    pub(crate) fn of(self, axis: &Axis) -> f64 {
         match self {
             Self::Lower => axis.from(),
             Self::Upper => axis.to(),

@@ -14,8 +14,7 @@ mod profile;
 mod rule;
 mod series;
 
-pub use end::End;
-pub(crate) use end::exponent_at;
+pub(crate) use end::{End, exponent_at};
 pub use profile::profile;
 
 use crate::space::Axis;

@@ -84,7 +84,7 @@ pub(super) enum Others<'a> {
 
 impl DerivedMeasure {
     /// All of them.
-    pub const ALL: [Self; 2] = [entropy::ENTROPY, balance::BALANCE];
+    pub(crate) const ALL: [Self; 2] = [entropy::ENTROPY, balance::BALANCE];
 
     /// Its word in files.
     pub fn name(self) -> &'static str {

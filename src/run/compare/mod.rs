@@ -16,20 +16,20 @@ use crate::system::Family;
 
 /// A comparison with what the tables need beside it.
 #[derive(Clone, Copy)]
-pub struct ComparedRun<'a> {
+pub(crate) struct ComparedRun<'a> {
     /// What was found.
-    pub comparison: &'a Comparison,
+    pub(crate) comparison: &'a Comparison,
     /// The resolved sweep, as TOML.
-    pub sweep: &'a str,
+    pub(crate) sweep: &'a str,
     /// What describes the comparison in full, as TOML: the sweep with the settings of every method.
-    pub of: &'a str,
+    pub(crate) of: &'a str,
     /// Threads that were used: times depend on them.
-    pub threads: usize,
+    pub(crate) threads: usize,
 }
 
 impl<'a> ComparedRun<'a> {
     /// The systems of which some were compared.
-    pub fn family(&self) -> &'a Family {
+    pub(crate) fn family(&self) -> &'a Family {
         &self.comparison.subject.family
     }
 }

@@ -33,7 +33,11 @@ impl JournalledSource {
 
     /// The same for a sweep, which asks no solution how it answers: every solve is written before it is given. Values
     /// of `points` are known, whatever their sessions had solved before, and are not solved.
-    pub fn of_sweep(source: Box<dyn DensitySource>, journal: &Journal, points: Vec<Point>) -> Self {
+    pub(crate) fn of_sweep(
+        source: Box<dyn DensitySource>,
+        journal: &Journal,
+        points: Vec<Point>,
+    ) -> Self {
         let points = points.into_iter();
         let known = Known {
             points: points.map(|point| (point.value.to_bits(), point)).collect(),

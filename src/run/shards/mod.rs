@@ -18,7 +18,7 @@ pub(crate) fn shard_folder(folder: &Path, shard: Shard) -> PathBuf {
 
 /// The shards of one sweep, as far as they are there.
 #[derive(Debug)]
-pub struct Shards {
+pub(crate) struct Shards {
     path: PathBuf,
     of: usize,
     /// Those with points, in the order of their numbers.
@@ -29,11 +29,11 @@ pub struct Shards {
 
 /// What shards have solved and seen.
 #[derive(Debug, Default)]
-pub struct Gathered {
+pub(crate) struct Gathered {
     /// All points, each value once.
-    pub points: Vec<Point>,
+    pub(crate) points: Vec<Point>,
     /// What was seen in their checks; `None` where there were none.
-    pub checks: Option<Vec<CheckedIndicator>>,
+    pub(crate) checks: Option<Vec<CheckedIndicator>>,
 }
 
 impl Shards {
@@ -42,7 +42,7 @@ impl Shards {
     /// # Errors
     /// [`RunError::NoShards`]; [`RunError::MixedShards`] when a sweep was cut into shards in more than one way;
     /// [`RunError::OtherSweep`]; [`RunError::OtherShard`]; as [`StoredRun::open`].
-    pub fn open(path: &Path) -> Result<Self, RunError> {
+    pub(crate) fn open(path: &Path) -> Result<Self, RunError> {
         let of = count(path)?;
         let (mut runs, mut missing) = (Vec::new(), Vec::new());
         for shard in (1..=of).filter_map(|number| Shard::new(number, of)) {
@@ -77,7 +77,7 @@ impl Shards {
     }
 
     /// How many shards the sweep was cut into.
-    pub fn of(&self) -> usize {
+    pub(crate) fn of(&self) -> usize {
         self.of
     }
 
@@ -105,7 +105,7 @@ impl Shards {
     ///
     /// # Errors
     /// [`RunError::MissingShards`] when none has begun.
-    pub fn any(&self) -> Result<&StoredRun, RunError> {
+    pub(crate) fn any(&self) -> Result<&StoredRun, RunError> {
         match self.runs.first() {
             Some(run) => Ok(run),
             None => Err(RunError::MissingShards {

@@ -39,7 +39,7 @@ impl AxisSettings {
 
     /// Whether it is cut into cells whose number can be given: all over a turn that is counted by trajectories are
     /// even.
-    pub fn is_cut(&self, method: MethodKind) -> bool {
+    pub(crate) fn is_cut(&self, method: MethodKind) -> bool {
         self.modes_by(method).is_none() && self.series != ModesOf::Turn
     }
 

@@ -89,7 +89,7 @@ impl TypedEquations {
     }
 
     /// Noises in words: which axis each drives, and whether its amplitude depends on the state.
-    pub fn noises(&self) -> Vec<String> {
+    pub(crate) fn noises(&self) -> Vec<String> {
         let (scope, reading) = (&self.reading.scope, &self.reading);
         let axes = scope.symbols().states();
         let channels = reading.noise.iter().zip(&reading.noise_axes).enumerate();

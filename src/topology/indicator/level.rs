@@ -26,7 +26,7 @@ impl IndicatorKind {
     /// Curvature of a joint density along one axis at a place that turns from a peak to the bottom within a ring, or at
     /// the saddle between two rings: positive when the ring is there. Both principal curvatures pass zero there
     /// together.
-    pub const fn level(along_second: bool) -> Self {
+    pub(crate) const fn level(along_second: bool) -> Self {
         Self(&BOTH[along_second as usize])
     }
 }
