@@ -76,6 +76,8 @@ struct Watched {
     /// The phase in periods, of a density at a phase of a forcing, and the axes of the state that it is of.
     phase: Option<f64>,
     states: Vec<usize>,
+    /// What it is, of a field of a passage over the state, which is no density.
+    field: Option<String>,
 }
 
 /// A located bifurcation, an end or a failure.
@@ -110,6 +112,7 @@ impl Scene {
                 phase: at.as_ref().map(|(_, phase)| *phase),
                 states: at.map_or_else(|| axes.clone(), |(states, _)| states),
                 axes,
+                field: None,
             }
         };
         Self {
@@ -129,6 +132,21 @@ impl Scene {
             sweep_file: sweep.to_toml(),
             labels: labels.iter().map(|row| Label::new(row, subject)).collect(),
         }
+    }
+}
+
+impl Scene {
+    /// The same with fields of passages over both axes of the state, after the densities.
+    pub(super) fn with_fields<'f>(mut self, names: impl Iterator<Item = &'f str>) -> Self {
+        let fields = names.map(|name| Watched {
+            name: name.to_owned(),
+            axes: vec![0, 1],
+            phase: None,
+            states: vec![0, 1],
+            field: Some(name.replace('_', " ")),
+        });
+        self.observables.extend(fields);
+        self
     }
 }
 

@@ -160,6 +160,7 @@ impl Shown<'_> {
 mod tests {
     use super::*;
     use crate::cancellation::Cancellation;
+    use crate::continuation::Point;
     use crate::explore::pack::{Packed, Scale};
     use crate::sweep_file::SweepFile;
     use base64::Engine as _;
@@ -252,6 +253,68 @@ mod tests {
         }
         let bands = told["arrays"][0]["band_is"].as_str().unwrap();
         assert!(bands.contains("second discretisation"), "{bands}");
+    }
+
+    #[test]
+    fn fields_of_passages_stand_behind_the_densities() {
+        let text = concat!(
+            include_str!("../../sweeps/coulomb_fc.toml"),
+            "\n[passage]\nover = { from = \"x < -0.5\", to = \"x > 0.5\", ",
+            "fields = [\"committor\", \"reactive-current\"] }\n"
+        );
+        let mut file = SweepFile::parse("coulomb_fc.toml", text);
+        for (key, value) in [("locate.grid_check", "off"), ("sweep.points", "3")]
+            .iter()
+            .chain(&SMALL[1..])
+        {
+            file.set(key, value);
+        }
+        let never = Cancellation::new();
+        let sweep = file.validate().unwrap().prepare(&never).unwrap();
+        let result = sweep.run(&never, &mut ()).unwrap();
+        let page = StoredPage::new(&sweep, &result).unwrap();
+        let told = words(page.html());
+        let densities = result.subject.observables.len();
+        let names = [
+            "over_committor",
+            "over_reactive_current_x",
+            "over_reactive_current_y",
+        ];
+        for (number, name) in names.into_iter().enumerate() {
+            let place = densities + number;
+            let (one, arrays) = (&told["observables"][place], &told["arrays"][place]);
+            assert_eq!(
+                (one["name"].as_str(), one["field"].as_str()),
+                (Some(name), Some(&*name.replace('_', " ")))
+            );
+            let known = || {
+                result
+                    .points
+                    .iter()
+                    .filter(|point| !point.report.fields.is_empty())
+            };
+            let at: Vec<f64> = known().map(|point| point.value).collect();
+            assert!(at.len() >= 3);
+            let packed = packed(page.html(), &arrays["values"], at.len());
+            for (frame, point) in packed.unpack(&at).iter().zip(known()) {
+                let field = point
+                    .report
+                    .fields
+                    .iter()
+                    .find(|field| field.name == name)
+                    .unwrap();
+                for (value, stored) in frame.iter().zip(&field.values) {
+                    let stored = if stored.is_finite() { *stored } else { 0.0 };
+                    assert!((value - stored).abs() <= packed.error_at(stored));
+                }
+            }
+        }
+        let told = told["observables"].as_array().unwrap();
+        assert!(
+            told.iter()
+                .take(densities)
+                .all(|one| one["field"].is_null())
+        );
     }
 
     #[test]

@@ -47,7 +47,7 @@ const build = (page) => {
   }).observe($("equations"));
   fill($("swept"), nodes(scene.swept.symbol));
   fill($("made"), `Made by ${scene.program}. ${source.note ?? ""}`);
-  const every = source.observables.map((_, k) => k);
+  const every = densitiesOf(source).map((_, k) => k);
   for (const [panel, all] of [["joint", page.joints], ["diagram", page.singles], ["plane", every]]) {
     fill($(`${panel}-choice`), all.map((k) => make("option", { value: k }, plain(source.observables[k].title))));
     $(`${panel}-choice`).hidden = all.length < 2;

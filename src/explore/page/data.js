@@ -6,7 +6,9 @@ class Observable {
     Object.assign(this, { name: told.name, axes: told.axes, phase: told.phase ?? null, states: told.states, edges });
     this.symbols = told.axes.map((axis) => axes[axis].symbol);
     this.joint = told.axes.length === 2;
-    this.title = `p(${this.symbols.join(", ")})`;
+    // A field of a passage over the state is no density, and nothing is counted in it.
+    this.field = told.field ?? null;
+    this.title = this.field ?? `p(${this.symbols.join(", ")})`;
     this.centres = edges.map(centres);
     this.volumes = volumes(edges);
   }
@@ -34,6 +36,9 @@ const largest = (values) => {
   for (const value of values) if (value > top) top = value;
   return top;
 };
+
+/** The densities among what a page shows; fields of passages stand behind them. */
+const densitiesOf = (source) => source.observables.filter(({ field }) => field === null);
 
 /** Frames of a finished sweep, all in the page. */
 class StoredSource {
@@ -111,13 +116,14 @@ const windowOf = (source, k, axis) => {
   const count = edges.length - 1;
   const inner = source.observables[k].joint && axis === 0 ? source.observables[k].edges[1].length - 1 : 1;
   const limit = 1e-3 * source.tops[k];
+  const isEmpty = source.observables[k].field === null ? (value) => value <= limit : (value) => Math.abs(value) <= limit;
   let [first, last] = [count - 1, 0];
   // Of a map all rows count, so that rows can be compared by eye.
   for (const frame of source.all ?? source.frames) {
     const values = frame.densities[k]?.values;
     if (!values) continue;
     for (let at = 0; at < values.length; at++) {
-      if (values[at] <= limit) continue;
+      if (isEmpty(values[at])) continue;
       const cell = Math.floor(at / inner) % count;
       if (cell < first) first = cell;
       if (cell > last) last = cell;

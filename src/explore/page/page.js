@@ -2,6 +2,12 @@
 
 const $ = (id) => document.getElementById(id);
 
+/** The name of a field in figures: the components of a current are drawn together. */
+const fieldName = ({ name }, { axes }) => {
+  const component = axes.map((axis) => axis.name).find((axis) => name.endsWith(`_reactive_current_${axis}`));
+  return component === undefined ? name : name.slice(0, -component.length - 1);
+};
+
 class Page {
   constructor(scene, source) {
     Object.assign(this, { scene, source, frame: null, pinned: null, paths: null, timer: null, drawn: {}, windows: {}, waiting: false, printing: false });
@@ -121,7 +127,10 @@ class Page {
     if (!this.frame) return;
     const began = performance.now();
     this.write();
-    if (this.k.joint !== undefined) this.paint("joint-canvas", drawJoint, this.k.joint);
+    if (this.k.joint !== undefined) {
+      $("joint-name").textContent = this.source.observables[this.k.joint].field === null ? "Joint density" : "Over the state";
+      this.paint("joint-canvas", drawJoint, this.k.joint);
+    }
     for (const k of this.singles) this.paint(`marginal-${k}`, drawMarginal, k);
     const hasSection = this.section !== null && this.k.joint !== undefined;
     $("section-figure").hidden = !hasSection;
@@ -251,7 +260,7 @@ class Page {
   restore(state) {
     const { source } = this;
     const numeric = (text) => (text !== undefined && text.trim() !== "" && Number.isFinite(Number(text)) ? Number(text) : null);
-    for (const [panel, all] of [["joint", this.joints], ["diagram", this.singles], ["plane", source.observables.map((_, k) => k)]]) {
+    for (const [panel, all] of [["joint", this.joints], ["diagram", this.singles], ["plane", densitiesOf(source).map((_, k) => k)]]) {
       const found = all.find((k) => source.observables[k].name === state[panel]);
       if (found !== undefined) this.k[panel] = found;
     }
@@ -338,7 +347,8 @@ class Page {
   commandOf(panel) {
     const { observable } = this.panel(panel);
     if (panel === "plane") return `pbif plot RUN --only map_${observable.name}`;
-    const kinds = { joint: `joint_${observable.name}`, section: `section_${observable.name}`, diagram: `diagram_${observable.name}` };
+    const own = observable.field === null ? `joint_${observable.name}` : `field_${fieldName(observable, this.scene)}`;
+    const kinds = { joint: own, section: `section_${observable.name}`, diagram: `diagram_${observable.name}` };
     const at = panel === "diagram" ? "" : ` --at ${this.frame.value}`;
     return `pbif plot RUN --only ${kinds[panel] ?? "marginals"}${at}`;
   }

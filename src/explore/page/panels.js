@@ -98,9 +98,11 @@ const drawJoint = (pen, width, height, view, size) => {
   const same = gridOf(source, pinned, k) === observable;
   const against = options.difference && same && pinned?.densities[k]?.values;
   const shown = values && against ? values.map((value, i) => value - against[i]) : values;
-  const top = against && shown ? Math.max(largest(shown), largest(shown.map((value) => -value)))
+  // Components of a current have either sign.
+  const signed = against || (observable.field !== null && values?.some((value) => value < -1e-3 * largest(values)));
+  const top = signed && shown ? Math.max(largest(shown), largest(shown.map((value) => -value)))
     : options.lock || (values ? largest(values) : 1);
-  const colours = { kind: against ? "difference" : options.log ? "log" : "linear", top };
+  const colours = { kind: signed ? "difference" : options.log ? "log" : "linear", top };
   const [x, y] = [view.window(k, 0), view.window(k, 1)];
   const inner = height - roomBelow(size) - 1.8 * size;
   const left = marginFor(y, inner, size);

@@ -40,7 +40,7 @@ const densityCsv = (scene, observable, density) => {
   const names = observable.axes.map((axis) => scene.axes[axis].name);
   const { values, band } = density;
   const [xs, ys] = observable.centres;
-  const lines = [[...names, "density", ...(band ? ["band"] : [])].join(",")];
+  const lines = [[...names, observable.field === null ? "density" : observable.name, ...(band ? ["band"] : [])].join(",")];
   for (let at = 0; at < values.length; at++) {
     const place = ys ? [xs[Math.floor(at / ys.length)], ys[at % ys.length]] : [xs[at]];
     lines.push([...place, values[at], ...(band ? [band[at]] : [])].join(","));

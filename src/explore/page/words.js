@@ -26,14 +26,14 @@ const sentence = (scene, source, frame) => {
   const second = scene.plane?.sides[1].symbol;
   const at = `${plain(scene.swept.symbol)} = ${plainNumber(frame.value, 6)}${second ? `, ${plain(second)} = ${plainNumber(frame.second, 6)}` : ""}`;
   if (!frame.densities.length) return `${at}: ${STATUS_WORDS[frame.status] ?? frame.status}`;
-  const counts = source.observables.map((one, k) => `${plain(one.title)} ${countWords(frame.found[k])}`);
+  const counts = densitiesOf(source).map((one, k) => `${plain(one.title)} ${countWords(frame.found[k])}`);
   return `${at}: ${counts.join("; ")}${isSound(frame.status) ? "" : `. ${STATUS_WORDS[frame.status]}`}`;
 };
 const countWords = (found) => (found ? found.words + (found.seen ? "" : " (its rim is not all seen on these cells)") : "–");
 
 /** Counts, findings and numbers of a frame. */
 const reading = ({ scene, source, frame, pinned }) => {
-  const counts = source.observables.map((one, k) => [
+  const counts = densitiesOf(source).map((one, k) => [
     make("dt", {}, nodes(one.title)), make("dd", {}, countWords(frame.found[k])),
   ]);
   const notices = frame.preview ? [make("p", { class: "hint" }, "Preview on half as many cells an axis; refined when the slider rests.")] : [];
@@ -60,7 +60,7 @@ const momentsTable = (scene, frame) => make("table", {},
   })));
 
 const comparison = (source, frame, pinned, scene) => {
-  const rows = source.observables.map((one, k) => {
+  const rows = densitiesOf(source).map((one, k) => {
     const [p, q] = [frame.densities[k]?.values, pinned.densities[k]?.values];
     const same = gridOf(source, frame, k) === gridOf(source, pinned, k);
     return row(nodes(one.title), p && q && same ? number(hellinger(p, q, gridOf(source, frame, k).volumes), 4) : "–");
