@@ -287,12 +287,8 @@ mod tests {
                 (one["name"].as_str(), one["field"].as_str()),
                 (Some(name), Some(&*name.replace('_', " ")))
             );
-            let known = || {
-                result
-                    .points
-                    .iter()
-                    .filter(|point| !point.report.fields.is_empty())
-            };
+            let has = |point: &&Point| point.report.fields.iter().any(|one| one.name == name);
+            let known = || result.points.iter().filter(has);
             let at: Vec<f64> = known().map(|point| point.value).collect();
             assert!(at.len() >= 3);
             let packed = packed(page.html(), &arrays["values"], at.len());

@@ -116,7 +116,9 @@ const drawJoint = (pen, width, height, view, size) => {
     if (options.contours) drawContours(plot, observable, shown, colours, largest(values));
     if (view.paths.length) drawPaths(plot, view.paths, size);
     if (options.marks) plot.clipped(() => drawMarks(plot, frame.found[k], size));
-    colourBar(pen, rect, colours, theme, size, against ? `Δ${observable.title}` : observable.title);
+    // What a field is called is too long for the bar, and stands above the panel.
+    const title = observable.field === null ? observable.title : "";
+    colourBar(pen, rect, colours, theme, size, against ? `Δ${title}` : title);
   }
   if (view.section !== null && shown) {
     const level = plot.y.to(view.section);
