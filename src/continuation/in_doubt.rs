@@ -7,7 +7,7 @@ use super::found::Found;
 use super::label::Located;
 use super::locate::has_wide_cells;
 use super::walk::Walk;
-use super::{Doubt, Point};
+use super::{Doubt, Finding, Point};
 use crate::density::Observable;
 
 /// An observable by its place among those that are watched.
@@ -21,7 +21,7 @@ pub(super) struct InDoubt<'p> {
     step: f64,
     /// Places of observables, and values, at which it is not known whether a pair of peak and saddle is there.
     unsure: Vec<(usize, f64)>,
-    /// The same where cells are wide.
+    /// The same where cells are wide, or hold what is not smooth.
     wide: Vec<(usize, f64)>,
 }
 
@@ -134,8 +134,8 @@ impl<'p> InDoubt<'p> {
     }
 }
 
-/// Places of joint densities, and values, at which cells are wide; none where there is a centre of symmetry, at which
-/// indicators are read.
+/// Places of joint densities, and values, at which cells are wide, or hold a place at which the drift is not smooth.
+/// None where there is a centre of symmetry, at which indicators are read.
 fn in_wide_cells(points: &[Point], observables: &[Observable]) -> Vec<(usize, f64)> {
     let is_free = |point: &Point, place: usize| {
         let density = point.densities.get(place);
@@ -145,12 +145,24 @@ fn in_wide_cells(points: &[Point], observables: &[Observable]) -> Vec<(usize, f6
     let joint: Vec<usize> = (joint.filter(|(_, one)| one.axes().len() > 1))
         .map(|(place, _)| place)
         .collect();
-    let wide = points.iter().filter(|point| has_wide_cells(point));
+    let is_blurred = |point: &&Point| has_wide_cells(point) || has_surfaces_in_cells(point);
+    let wide = points.iter().filter(is_blurred);
     wide.flat_map(|point| {
         let places = joint.iter().filter(|place| is_free(point, **place));
         places.map(|&place| (place, point.value))
     })
     .collect()
+}
+
+/// Whether the drift is not smooth at a place inside of cells.
+fn has_surfaces_in_cells(point: &Point) -> bool {
+    let mut findings = point.report.findings.iter();
+    findings.any(|finding| {
+        matches!(
+            finding,
+            Finding::SurfaceOffFaces { .. } | Finding::JumpInsideCells { .. }
+        )
+    })
 }
 
 /// Where a row may lie.

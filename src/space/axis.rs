@@ -274,6 +274,7 @@ impl Axis {
     }
 }
 
+mod faces;
 mod modes;
 mod place;
 #[cfg(test)]

@@ -11,7 +11,7 @@ use crate::generator::{
     assemble_lines,
 };
 use crate::method::problem::Maps;
-use crate::method::structure::{all_kinked_surfaces, closed_ends};
+use crate::method::structure::{all_kinked_surfaces, closed_ends, fixed_surfaces};
 use crate::method::watched::Masses;
 use crate::method::{MethodError, Problem, has_densities};
 use crate::space::CellSpace;
@@ -100,7 +100,11 @@ impl GeneratorSource {
     /// The same on finer cells.
     pub(super) fn refined(&self, want: &Want) -> Result<Self, MethodError> {
         let space = self.problem.space();
-        let finer = CellSpace::new(finer_axes(space))?;
+        let systems = self.problem.family().along()?;
+        let finer = finer_axes(space).into_iter().enumerate();
+        // What is not smooth inside a cell is not seen there, however small the cell.
+        let finer = finer.map(|(axis, cells)| cells.with_faces_on(&fixed_surfaces(&systems, axis)));
+        let finer = CellSpace::new(finer.collect())?;
         let problem = self.problem.wanting(want).on(finer)?;
         let problem = problem.with_finer_bins(finer_factor(space));
         Ok(Self {

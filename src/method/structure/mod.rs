@@ -57,6 +57,18 @@ pub(super) fn all_kinked_surfaces(
     surfaces
 }
 
+/// The places of the switching surfaces across an axis that stay where they are all along the sweep.
+pub(super) fn fixed_surfaces(systems: &[Arc<dyn System>], axis: usize) -> Vec<f64> {
+    let Some((first, others)) = systems.split_first() else {
+        return Vec::new();
+    };
+    let stays = |at: &f64| {
+        let mut others = others.iter();
+        others.all(|system| system.facts().surfaces_on(axis).any(|one| one == *at))
+    };
+    first.facts().surfaces_on(axis).filter(stays).collect()
+}
+
 /// Whether the lower and upper end of each axis is a wall that the system cannot pass, all along the sweep, or belongs
 /// to a series.
 pub(super) fn closed_ends(systems: &[Arc<dyn System>], space: &CellSpace) -> Vec<[bool; 2]> {

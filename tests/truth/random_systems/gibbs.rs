@@ -204,6 +204,15 @@ fn what_wide_cells_do_not_count_at_the_ends_of_a_sweep_is_told_by_finer_ones() {
     assert_eq!((closer.located, closer.located_right), (2, 2));
 }
 
+/// A force of the power 3/2 bends inside a cell, and no value of the sweep on 45 × 45 cells shows the two peaks that
+/// last for less than two of its steps. Cells are not wide there, and finer ones have a face on the bend.
+#[test]
+fn a_pair_beside_a_bend_inside_a_cell_is_told_by_finer_cells() {
+    let [coarse, closer] = without_and_with_closer_looks(1_688_003);
+    assert_eq!((coarse.missed, coarse.in_band), (2, 0));
+    assert_eq!((closer.missed, closer.false_located), (0, 0));
+}
+
 #[test]
 #[ignore = "prints the table of docs/location.md"]
 fn gibbs_in_full() {
