@@ -5,6 +5,7 @@ A thin module over the library of the program `pbif`: nothing is computed in Pyt
 from __future__ import annotations
 
 from ._pbif import Figure, version as __version__
+from .detected import Density, Detected, DetectedChange
 from .errors import Finding, InputError, Interrupted, Location, PbifError, PbifWarning, RunError
 from .found import Change, Changes, Curve, Curves, Map, Page, Run, Solution
 from .found import open_plane, open_run as open
@@ -13,7 +14,7 @@ from .sweep import Session, Sweep, System, gallery, systems
 read = Sweep.read
 
 __all__ = [
-    "Change", "Changes", "Curve", "Curves", "Figure", "Finding", "InputError", "Interrupted", "Location", "Map", "Page",
+    "Change", "Changes", "Curve", "Curves", "Density", "Detected", "DetectedChange", "Figure", "Finding", "InputError", "Interrupted", "Location", "Map", "Page",
     "PbifError", "PbifWarning", "Run", "RunError", "Session", "Solution", "Sweep", "System", "gallery", "main", "open",
     "open_plane", "read", "systems",
 ]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _pbif
 from ._pbif import Figure
+from .detected import Detected, Detector, detected
 
 if TYPE_CHECKING:
     import numpy as np
@@ -191,6 +192,15 @@ class _Found:
     def _arrays(self) -> dict[str, NDArray[np.float64]]:
         return {name: values for name, _, values, _ in self._raw.arrays()[0]}
 
+    @property
+    def fields(self) -> list[str]:
+        """Names of the fields of passages over the state that `[passage]` asked for: `cross_committor`."""
+        arrays = {name: names for name, names, *_ in self._raw.arrays()[0]}
+        densities = {"p_" + name for name in self.observables}
+        axes = [name for name in arrays if name + "_edges" in arrays]
+        is_field = lambda name: name + "_error" in arrays and name not in densities  # noqa: E731
+        return [name for name, (first, *rest) in arrays.items() if rest and rest == axes[: len(rest)] and is_field(name)]
+
     def to_xarray(self) -> xarray.Dataset:
         """Densities `p_x` (∫ = 1), their errors, moments and measures over the parameter, as an xarray Dataset.
 
@@ -277,6 +287,33 @@ class Run(_Found):
     def signatures(self) -> list[dict[str, str]]:
         """What was counted at every value, by observable."""
         return [dict(zip(self.observables, one)) for one in self._raw.seen()[0]]
+
+    def field(self, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """A field of a passage over the state (`fields` has their names) with its errors: an array of a value of the
+        parameter and a cell of each axis. What is not known is NaN."""
+        arrays = self._arrays()
+        return arrays[name], arrays[name + "_error"]
+
+    def detected(self, detector: Detector, of: str = "x", within: float | None = None) -> Detected:
+        """What a function of yours makes of the density `of` at every value, and where its answer changes.
+
+        `detector` is called with a `Density` and gives anything that can be compared: a count, a word. With `within`,
+        more values are solved until each bracket in which the answer changes is no wider. What the function raises is
+        raised here.
+
+        >>> import numpy as np, pbif
+        >>> s = pbif.System("x = a x - x^3", noise={"x": "sqrt(s2)"}, a=0.0, s2=0.25)
+        >>> run = s.sweep("a", -1, 1, 11, cells={"x": {"from": -2.2, "to": 2.2, "count": 60}})
+        >>> def is_wide(p):
+        ...     return bool(np.average(p.centres["x"] ** 2, weights=p.values) > 0.3)
+        >>> (change,) = run.detected(is_wide, "x", within=1e-3).changes
+        >>> change.before, change.after, change.upper - change.lower <= 1e-3
+        (False, True, True)
+        """
+        sweep = _pbif.Sweep("the run's sweep", self.toml, [], None) if within is not None else None
+        session = sweep.session() if sweep is not None else None
+        solve = lambda at: Solution(session.solve(at))  # type: ignore[union-attr]  # noqa: E731
+        return detected(self, detector, of, within, solve)
 
     def spectrum(self, of: str = "x") -> dict[str, NDArray[np.float64]]:
         """A spectrum that `[spectrum]` asked for: the power spectrum of an observable, or the cross spectrum of `"x, v"`.
@@ -395,6 +432,12 @@ class Solution(_Found):
         """A density by its name, one value a cell, ∫ = 1; a joint density with a row a cell of its first axis."""
         found: NDArray[np.float64] = self._arrays()["p_" + name][0]
         return found
+
+    def field(self, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """A field of a passage over the state (`fields` has their names) with its errors, one value a cell of each axis.
+        What is not known is NaN."""
+        arrays = self._arrays()
+        return arrays[name][0], arrays[name + "_error"][0]
 
     def edges(self, axis: str = "x") -> NDArray[np.float64]:
         """The edges of the cells of an axis."""
