@@ -249,6 +249,8 @@ pub enum PassageFault {
     NoSwitching,
     /// A region is the basin of a peak that the density does not have.
     NoPeak,
+    /// The two regions of transitions have cells in common.
+    Overlap,
 }
 
 /// A class of cells with a steady state of its own, beside others.

@@ -175,6 +175,9 @@ pub enum PassageError {
     /// The process never enters the target.
     #[error("the region that is waited for is never entered from the start")]
     Never,
+    /// Transitions are between two regions that have cells in common.
+    #[error("the two regions of the transitions have states in common")]
+    Overlap,
     /// The steady state is not known, and the start is weighted by it.
     #[error("the start is weighted by a steady state, and there is none")]
     NoDensity,

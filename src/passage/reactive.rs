@@ -22,11 +22,11 @@ use super::timed::WithError;
 use super::{KnownDensity, PassageError, dot};
 use crate::cancellation::Cancellation;
 use crate::generator::{
-    AbsorbingGenerator, Closure, Dissipation, GeneratorOptions, assemble_absorbing,
+    AbsorbingGenerator, Closure, Dissipation, GeneratorOptions, assemble_absorbing, levels,
 };
 use crate::space::CellSpace;
 use crate::stationary::generator::{Absorbing, AbsorbingSolver, Expected, RateOptions};
-use crate::system::System;
+use crate::system::{BoundQuantity, System};
 
 /// What is known of processes on their way from one region to another.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,9 +55,10 @@ pub fn reactive(
     (options, rates): (&GeneratorOptions, &RateOptions),
     cancellation: &Cancellation,
 ) -> Result<Reactive, PassageError> {
-    let [from, _] = &target.exits[..] else {
+    let [from, to] = &target.exits[..] else {
         return Err(PassageError::Nowhere);
     };
+    are_apart(space, [from, to])?;
     let question = Question {
         asked: Asked {
             system,
@@ -98,6 +99,23 @@ pub fn reactive(
         density,
         current,
     })
+}
+
+/// Nothing, if both regions have cells, and none in common.
+fn are_apart(space: &CellSpace, [from, to]: [&BoundQuantity; 2]) -> Result<(), PassageError> {
+    let [from, to] = [levels(space, from)?, levels(space, to)?];
+    let is_in = |level: &f64| *level < 0.0;
+    if !to.iter().any(is_in) {
+        return Err(PassageError::Nowhere);
+    }
+    if !from.iter().any(is_in) {
+        return Err(PassageError::Start);
+    }
+    let mut pairs = from.iter().zip(&to);
+    match pairs.any(|(from, to)| is_in(from) && is_in(to)) {
+        true => Err(PassageError::Overlap),
+        false => Ok(()),
+    }
 }
 
 /// What one grid gives: flux, rate and duration; the density, and the current along each axis.

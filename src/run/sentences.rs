@@ -299,6 +299,11 @@ fn passage_in_words(family: &Family, passage: usize, fault: PassageFault) -> Str
         PassageFault::NoPeak => {
             "a region is the basin of a peak that the density does not have here, or is the only one"
         }
+        PassageFault::Overlap => {
+            return format!(
+                "passage `{name}` has no transitions: its two regions have states in common: give regions that have none"
+            );
+        }
         PassageFault::NoSwitching => {
             return format!(
                 "passage `{name}` has no rates from the slowest mode: that is no exchange between its two regions, or these cells do not tell it to a tenth: more of them may"

@@ -482,3 +482,75 @@ fn paths_that_go_on_for_too_long_are_told() {
         &["hardly a path entered", "method.longest_passage"],
     );
 }
+
+const TRANSITIONS: &str = r#"
+[system.equations]
+x = "x - x^3 + h"
+[system.noise]
+x = "sqrt(0.2)"
+[system.parameters]
+h = 0
+[sweep]
+parameter = "h"
+from = -0.1
+to = 0.1
+points = 3
+[passage]
+cross = { from = "x < -0.5", to = "x > 0.5", fields = ["reactive-density", "reactive-current"] }
+[figures]
+formats = ["svg"]
+"#;
+
+#[test]
+fn transitions_come_to_tables_and_figures_and_regions_in_common_are_told() {
+    let room = Room::new();
+    room.write("a.toml", TRANSITIONS);
+    room.done("sweep a.toml --out run");
+    let rows = &room.table("run/points.csv").0;
+    let fluxes: Vec<f64> = rows
+        .iter()
+        .map(|row| row.number("cross_transition_flux"))
+        .collect();
+    for row in rows {
+        assert!(!row["findings"].contains("passage"), "{}", &row["findings"]);
+        for name in ["flux", "rate", "time"] {
+            let name = format!("cross_transition_{name}");
+            let [value, error] =
+                [name.clone(), format!("{name}_error")].map(|name| row.number(&name));
+            assert!(
+                error > 0.0 && error < 1e-3 * value,
+                "{name}: {value} ± {error}"
+            );
+        }
+    }
+    // The tilt to one side is the mirror image of that to the other, and as many go back as go.
+    let error = rows[0].number("cross_transition_flux_error");
+    assert!(
+        (fluxes[0] - fluxes[2]).abs() < 2.0 * error + 1e-9,
+        "{fluxes:?}"
+    );
+    for name in [
+        "field_cross_reactive_density",
+        "field_cross_reactive_current_x",
+    ] {
+        assert!(
+            room.read(&format!("run/figures/{name}.svg"))
+                .contains("<svg")
+        );
+    }
+    for (to, code, words) in [
+        (
+            "x > -0.8 and x < 0.1",
+            "passage-overlap",
+            "states in common",
+        ),
+        ("x > 9", "passage-nowhere", "widen the ranges"),
+    ] {
+        room.write("b.toml", TRANSITIONS.replace("x > 0.5", to));
+        room.done(&format!("sweep b.toml --out {code} --set figures.draw=[]"));
+        let row = &room.table(&format!("{code}/points.csv")).0[0];
+        assert!(row["findings"].contains(code), "{}", &row["findings"]);
+        assert!(row["warnings"].contains(words), "{}", &row["warnings"]);
+        assert_eq!(&row["cross_transition_flux"], "");
+    }
+}

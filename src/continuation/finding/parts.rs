@@ -121,7 +121,7 @@ stored! {
 
 impl PassageFault {
     /// All of them, with their codes.
-    pub(super) const CODES: [(Self, &'static str); 10] = [
+    pub(super) const CODES: [(Self, &'static str); 11] = [
         (Self::Nowhere, "passage-nowhere"),
         (Self::Everywhere, "passage-everywhere"),
         (Self::Start, "passage-start"),
@@ -132,6 +132,7 @@ impl PassageFault {
         (Self::RunsAway, "passage-runs-away"),
         (Self::NoSwitching, "passage-no-switching"),
         (Self::NoPeak, "passage-no-peak"),
+        (Self::Overlap, "passage-overlap"),
     ];
 
     fn code(self) -> &'static str {
