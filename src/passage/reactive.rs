@@ -66,7 +66,7 @@ pub fn reactive(
             target,
         },
         steady: Steady::new(space, density.unknowns),
-        changes: density.changes.map(|changes| Steady::new(space, changes)),
+        changes: density.changes.map(|changes| Steady::bound(space, changes)),
         masses: mass_in(space, &density, from)?,
         options,
         rates: RateOptions {
@@ -310,16 +310,21 @@ impl Question<'_> {
             let rate = (flux - own[1] * mass) / mass_own;
             [flux, rate, (way_change - own[2] * flux) / flux_own]
         };
+        // Of changes whose signs are not known, or count for nothing.
+        let bound = |flux: f64, mass: f64, way: f64| {
+            let [flux, mass, way] = [flux, mass, way].map(f64::abs);
+            let [_, rate, duration] = own.map(f64::abs);
+            let rate = (flux + rate * mass) / mass_own;
+            [flux, rate, (way + duration * flux) / flux_own.abs()]
+        };
         let known = |all: [f64; 3]| all.map(Some).to_vec();
         let on_grid = OnGrid {
             values: known(own),
             halved: known(change(flux.halved, mass.halved, way.halved)),
-            border: known(change(flux.border, mass.border, way.border)),
+            border: known(bound(flux.border, mass.border, way.border)),
         };
-        Found::new(
-            on_grid,
-            change(flux.steady, mass.steady, way.steady).to_vec(),
-        )
+        let steady = bound(flux.steady, mass.steady, way.steady);
+        Found::new(on_grid, steady.to_vec())
     }
 
     /// A field with what it is inside the regions, where nothing is on its way.

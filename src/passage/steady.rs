@@ -1,9 +1,11 @@
 //! A steady state on the cells of a sweep, between their nodes, and its mass in a region.
 
+use super::field::greatest_beside;
 use super::spread::add_density;
 use super::start::at_state;
 use super::timed::WithError;
 use super::{KnownDensity, PassageError};
+use crate::density::Roughness;
 use crate::generator::levels;
 use crate::space::CellSpace;
 use crate::space::nodes::{FEWER_NODES, NODES};
@@ -14,6 +16,8 @@ pub(super) struct Steady<'a> {
     space: &'a CellSpace,
     kept: Vec<bool>,
     values: Vec<f64>,
+    /// Whether it is a bound, which is that of a cell everywhere in it.
+    is_bound: bool,
 }
 
 impl<'a> Steady<'a> {
@@ -24,10 +28,24 @@ impl<'a> Steady<'a> {
             space,
             kept: vec![true; unknowns.len()],
             values: values.map(|(unknown, volume)| unknown / volume).collect(),
+            is_bound: false,
         }
     }
 
+    /// How large changes of a steady state are about each cell: at a single place they may vanish by chance.
+    pub(super) fn bound(space: &'a CellSpace, changes: &[f64]) -> Self {
+        let mut sizes = Self::new(space, changes);
+        sizes.values.iter_mut().for_each(|size| *size = size.abs());
+        sizes.values = greatest_beside(space, &sizes.values);
+        sizes.is_bound = true;
+        sizes
+    }
+
     pub(super) fn at(&self, state: &[f64]) -> f64 {
+        if self.is_bound {
+            let cell = self.space.find(state);
+            return cell.map_or(0.0, |cell| self.values[cell]);
+        }
         let cells = (self.space, self.kept.as_slice());
         at_state(cells, state, NODES, &self.values).unwrap_or(0.0)
     }
@@ -57,6 +75,54 @@ pub(super) fn mass_in(
     };
     let own = mass(density.unknowns, NODES);
     let fewer = mass(density.unknowns, FEWER_NODES);
-    let changes = density.changes.map_or(0.0, |changes| mass(changes, NODES));
-    Ok((own, (own - fewer).abs() + changes.abs()))
+    let changed = density.changes.map_or(0.0, |changes| {
+        // What the changes do were those of neighbouring layers of cells independent: their sum may vanish by chance.
+        let of_cell = |level: &f64| f64::from(u8::from(*level < 0.0)) - own;
+        let roughness = Roughness {
+            space,
+            weights: density.unknowns,
+            differences: changes,
+            planes: density.planes,
+        };
+        let values: Vec<f64> = levels.iter().map(of_cell).collect();
+        mass(changes, NODES).abs() + roughness.of(&values)
+    });
+    Ok((own, (own - fewer).abs() + changed))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::Axis;
+    use crate::system::{regions, registry};
+    use statrs::function::erf::erf;
+
+    #[test]
+    fn the_mass_of_a_normal_density_below_a_border_is_that_of_the_error_function() {
+        let model = registry::find("bistable").unwrap();
+        let region = regions(&model, &[("left", "x < -0.417")])
+            .unwrap()
+            .remove(0);
+        let values = model.values(&[("a", 1.0), ("sigma2", 0.2)]).unwrap();
+        let region = region.level().bind(&values).unwrap();
+        let exact = 0.5 * (1.0 + erf(-0.417 / (0.5 * 2.0_f64.sqrt())));
+        for cells in [40, 54, 80, 120] {
+            let space = CellSpace::new(vec![Axis::uniform(-4.0, 4.0, cells).unwrap()]).unwrap();
+            let width = 8.0 / cells as f64;
+            let unknowns: Vec<f64> = (0..cells)
+                .map(|cell| {
+                    let x = space.node(cell)[0];
+                    width * (-2.0 * x * x).exp() / (0.5 * (2.0 * std::f64::consts::PI).sqrt())
+                })
+                .collect();
+            let density = KnownDensity {
+                unknowns: &unknowns,
+                changes: None,
+                planes: &[],
+            };
+            let (mass, error) = mass_in(&space, &density, &region).unwrap();
+            println!("{cells}: {mass} ± {error:.1e}, off {:.1e}", mass - exact);
+            assert!((mass - exact).abs() <= error + 1e-12);
+        }
+    }
 }
