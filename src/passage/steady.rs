@@ -121,7 +121,6 @@ mod tests {
                 planes: &[],
             };
             let (mass, error) = mass_in(&space, &density, &region).unwrap();
-            println!("{cells}: {mass} ± {error:.1e}, off {:.1e}", mass - exact);
             assert!((mass - exact).abs() <= error + 1e-12);
         }
     }

@@ -300,7 +300,7 @@ fn draw_maps(
     legend.draw(&page, left + 0.5 * whole.0, below);
     let shown = match is_current {
         true => {
-            ", with lines along it; colours have its size, with each component over the range of its axis".to_owned()
+            ", with lines along it; colours have its size, with each component over what is shown of its axis".to_owned()
         }
         false => {
             let errors = maps.iter().flat_map(|(_, map)| map.fields);
