@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from . import _pbif
 from ._pbif import Figure
-from .detected import Detected, Detector, detected
+from .detected import Detected, DetectedChanges, Detections
+from .fields import Fields
 
 if TYPE_CHECKING:
     import numpy as np
@@ -171,6 +172,8 @@ def _axes(ax: Any) -> Any:
 class _Found:
     """What runs and solutions have in common."""
 
+    _is_single = False
+
     def __init__(self, raw: _pbif.Found) -> None:
         self._raw = raw
 
@@ -193,16 +196,18 @@ class _Found:
         return {name: values for name, _, values, _ in self._raw.arrays()[0]}
 
     @property
-    def fields(self) -> list[str]:
-        """Names of the fields of passages over the state that `[passage]` asked for: `cross_committor`."""
-        arrays = {name: names for name, names, *_ in self._raw.arrays()[0]}
-        densities = {"p_" + name for name in self.observables}
-        axes = [name for name in arrays if name + "_edges" in arrays]
-        is_field = lambda name: name + "_error" in arrays and name not in densities  # noqa: E731
-        return [name for name, (first, *rest) in arrays.items() if rest and rest == axes[: len(rest)] and is_field(name)]
+    def fields(self) -> Fields:
+        """The fields of passages over the state that `[passage]` asked for, by name: `fields["cross_committor"]`."""
+        return Fields(self._raw, self._is_single)
+
+    def field(self, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Values and errors of a field of a passage over the state; `fields` has its axes and its unit besides."""
+        one = self.fields[name]
+        return one.values, one.errors
 
     def to_xarray(self) -> xarray.Dataset:
-        """Densities `p_x` (∫ = 1), their errors, moments and measures over the parameter, as an xarray Dataset.
+        """Densities `p_x` (∫ = 1), fields of passages, their errors, moments and measures over the parameter, as an
+        xarray Dataset.
 
         Cells have centres `x`, edges `x_edges` and CF bounds `x_bounds`; attributes hold equations, the parameters that
         are held (JSON) and the table of changes (CSV). What the solver leaves below zero in a density is zero here."""
@@ -212,6 +217,9 @@ class _Found:
         dataset = xarray.Dataset(attrs=dict(attributes))
         for name, dimensions, values, attrs in arrays:
             dataset[name] = (dimensions, values, attrs)
+        for name, unit in self._raw.fields():
+            for array in (name, name + "_error"):
+                dataset[array].attrs["units"] = unit
         values = dataset[self.parameter].values
         columns = self._raw.columns()
         solved = [v in set(values.tolist()) for v in columns[self.parameter][0].tolist()]
@@ -243,6 +251,10 @@ class _Found:
 class Run(_Found):
     """A run: what was found along a sweep, and its folder."""
 
+    def __init__(self, raw: _pbif.Found) -> None:
+        super().__init__(raw)
+        self._detected: dict[str, Detected] = {}
+
     def __repr__(self) -> str:
         return f"<pbif.Run {self._raw.title!r}: {len(self)} values, {len(self.bifurcations)} changes>"
 
@@ -251,7 +263,8 @@ class Run(_Found):
 
     def _repr_html_(self) -> str:
         figure = self.figure()
-        return (figure.svg if figure else "") + self.changes._repr_html_()
+        shown = (figure.svg if figure else "") + self.changes._repr_html_()
+        return shown + (self.detected_changes._repr_html_() if self._detected else "")
 
     @property
     def folder(self) -> str:
@@ -288,32 +301,27 @@ class Run(_Found):
         """What was counted at every value, by observable."""
         return [dict(zip(self.observables, one)) for one in self._raw.seen()[0]]
 
-    def field(self, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """A field of a passage over the state (`fields` has their names) with its errors: an array of a value of the
-        parameter and a cell of each axis. What is not known is NaN."""
-        arrays = self._arrays()
-        return arrays[name], arrays[name + "_error"]
+    @property
+    def detected(self) -> Detections:
+        """What your own detectors say: `detected["bumps"]` of one that the sweep was given by that name, and
+        `detected(function, of="x")` of another one."""
+        return Detections(self, self._detected)
 
-    def detected(self, detector: Detector, of: str = "x", within: float | None = None) -> Detected:
-        """What a function of yours makes of the density `of` at every value, and where its answer changes.
+    @property
+    def detected_changes(self) -> DetectedChanges:
+        """The brackets in which answers of the detectors of the sweep change."""
+        return DetectedChanges(row for one in self._detected.values() for row in one.changes)
 
-        `detector` is called with a `Density` and gives anything that can be compared: a count, a word. With `within`,
-        more values are solved until each bracket in which the answer changes is no wider. What the function raises is
-        raised here.
+    def _solving(self) -> Callable[[float], _pbif.Found]:
+        """Solves values, one after the other, as the sweep would."""
+        opened: list[_pbif.Session] = []
 
-        >>> import numpy as np, pbif
-        >>> s = pbif.System("x = a x - x^3", noise={"x": "sqrt(s2)"}, a=0.0, s2=0.25)
-        >>> run = s.sweep("a", -1, 1, 11, cells={"x": {"from": -2.2, "to": 2.2, "count": 60}})
-        >>> def is_wide(p):
-        ...     return bool(np.average(p.centres["x"] ** 2, weights=p.values) > 0.3)
-        >>> (change,) = run.detected(is_wide, "x", within=1e-3).changes
-        >>> change.before, change.after, change.upper - change.lower <= 1e-3
-        (False, True, True)
-        """
-        sweep = _pbif.Sweep("the run's sweep", self.toml, [], None) if within is not None else None
-        session = sweep.session() if sweep is not None else None
-        solve = lambda at: Solution(session.solve(at))  # type: ignore[union-attr]  # noqa: E731
-        return detected(self, detector, of, within, solve)
+        def solve(at: float) -> _pbif.Found:
+            if not opened:
+                opened.append(self._raw.session())
+            return opened[0].solve(at)
+
+        return solve
 
     def spectrum(self, of: str = "x") -> dict[str, NDArray[np.float64]]:
         """A spectrum that `[spectrum]` asked for: the power spectrum of an observable, or the cross spectrum of `"x, v"`.
@@ -395,6 +403,8 @@ def open_run(folder: Path, **settings: Any) -> Run:  # type: ignore[valid-type]
 class Solution(_Found):
     """What was found at one value of the parameter."""
 
+    _is_single = True
+
     def __repr__(self) -> str:
         return f"<pbif.Solution {self.parameter} = {self.value:g}: {self.status}, {self.signatures}>"
 
@@ -432,12 +442,6 @@ class Solution(_Found):
         """A density by its name, one value a cell, ∫ = 1; a joint density with a row a cell of its first axis."""
         found: NDArray[np.float64] = self._arrays()["p_" + name][0]
         return found
-
-    def field(self, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """A field of a passage over the state (`fields` has their names) with its errors, one value a cell of each axis.
-        What is not known is NaN."""
-        arrays = self._arrays()
-        return arrays[name][0], arrays[name + "_error"][0]
 
     def edges(self, axis: str = "x") -> NDArray[np.float64]:
         """The edges of the cells of an axis."""

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Callable
 
 from . import _pbif, _text
+from .detected import Detector, Function as Detect, Watch
 from .found import Map, Path, Run, Solution, Tell, how
 
 Function = Callable[[Any, dict[str, float]], Any]
@@ -129,11 +130,23 @@ class System:
         drawn: bool = False,
         threads: int | None = None,
         progress: bool | Tell | None = None,
+        detectors: Mapping[str, Detect | Detector] | None = None,
         **sections: Any,
     ) -> Run:
-        """Sweeps a parameter and locates the changes: `prepare` and `Sweep.run`."""
+        """Sweeps a parameter and locates the changes: `prepare` and `Sweep.run`.
+
+        >>> import pbif
+        >>> s = pbif.System("x = a x - x^3", noise={"x": "sqrt(s2)"}, a=0.0, s2=0.25)
+        >>> def middle(p):
+        ...     return "low" if p.values[30] < p.values.max() / 2 else "high"
+        >>> cells = {"x": {"from": -2.2, "to": 2.2, "count": 61}}
+        >>> run = s.sweep("a", -1, 1, 11, cells=cells, detectors={"middle": pbif.Detector(middle, within=0.02)})
+        >>> (change,) = run.detected_changes
+        >>> change.before, change.after, change.lower < 0.589 < change.upper, change.upper - change.lower <= 0.02
+        ('high', 'low', True, True)
+        """
         sweep = self.prepare(parameter, start, stop, points, **sections)
-        return sweep.run(out=out, resume=resume, figures=drawn, threads=threads, progress=progress)
+        return sweep.run(out=out, resume=resume, figures=drawn, threads=threads, progress=progress, detectors=detectors)
 
     def density(self, parameter: str, value: float, **sections: Any) -> Solution:
         """The densities at one value of a parameter."""
@@ -210,14 +223,25 @@ class Sweep:
         figures: bool = False,
         threads: int | None = None,
         progress: bool | Tell | None = None,
+        detectors: Mapping[str, Detect | Detector] | None = None,
     ) -> Run:
         """Solves along the parameter and locates the changes.
 
         `out` is the folder of the run; without one it is a folder that lasts as long as the run. With `resume` it goes on
         with what is there, and solves nothing where that is complete. `figures` draws those that the file names into the
         folder. `progress` is called with words and `(done, wanted)`, or says whether there is a bar. Ctrl-C raises
-        `Interrupted`, whose folder can be gone on with."""
-        return Run(self._raw.run(out, how(resume, figures, threads, progress)))
+        `Interrupted`, whose folder can be gone on with.
+
+        `detectors` are your own, by name: functions of a `Density`, that of the first watched observable, which give a
+        number or a word; a `Detector` says which density, and how narrow brackets are to be. Each sees every value as
+        soon as it is solved, in no certain order, on the thread that called `run`. What one raises is raised here: it
+        stops the sweep, and the same call with `out` and `resume=True` goes on. The run has their
+        answers. `System.sweep` has an example."""
+        watch = Watch(detectors, self._about["observables"])
+        raw = self._raw.run(out, how(resume, figures, threads, progress), watch.look)
+        run = Run(raw)
+        run._detected = watch.end(run)
+        return run
 
     def map(
         self,

@@ -16,12 +16,14 @@ use pbif::sweep_file::{Report, Sweep, SweepFile};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
+use crate::arrays;
 use crate::drift::Failure;
 use crate::error;
 use crate::figure::Figure;
 use crate::home::Home;
 use crate::job::{How, carried_out};
 use crate::plane::{Plane, stored_plane};
+use crate::session::Session;
 
 /// What was found along a sweep, or at one value.
 #[pyclass(frozen, module = "pbif._pbif")]
@@ -284,6 +286,30 @@ impl Found {
         Ok((arrays, data.attributes))
     }
 
+    /// Names of the fields of passages over the state, with their units.
+    fn fields(&self) -> Vec<(String, String)> {
+        arrays::field_names(&self.result)
+    }
+
+    /// A field by its name. Its numbers are copied once.
+    fn field<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<arrays::Field<'py>>> {
+        arrays::field(py, &self.result, name)
+    }
+
+    /// A density by its name, value by value.
+    fn densities<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+    ) -> PyResult<Option<arrays::Densities<'py>>> {
+        arrays::densities(py, &self.result, name)
+    }
+
+    /// Opens a session of its sweep.
+    fn session(&self) -> Session {
+        Session::new(&self.sweep, self.failure.clone())
+    }
+
     /// Names of all figures.
     fn figure_names(&self) -> Vec<String> {
         self.with_figures(&[], |figures| figures.names())
@@ -345,7 +371,7 @@ impl Found {
             (out, _) => (Home::new(out)?, None),
         };
         let home = Arc::new(home);
-        let found = carried_out(py, job, (home.path(), self.failure.as_deref()), &how)
+        let found = carried_out(py, job, (home.path(), self.failure.as_deref()), &how, None)
             .inspect_err(|_| {
                 home.keep();
                 self.keep();

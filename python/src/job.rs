@@ -3,15 +3,16 @@
 use std::path::Path;
 
 use pbif::cancellation::Cancellation;
+use pbif::continuation::Point;
 use pbif::figure::Figure;
-use pbif::job::{Context, Job, JobError, Outcome, Start, carry_out};
+use pbif::job::{Context, Job, JobError, Outcome, Progress, Start, carry_out};
 use pbif::run::{JobFolder, Layout, PhaseSeconds, RunError};
 use pbif::sweep_file::Sweep;
 use pyo3::prelude::*;
 
 use crate::drift::Failure;
 use crate::error;
-use crate::watch::{told, watched};
+use crate::watch::{Ear, Told, tell_words, watched, words};
 
 /// How a job is carried out.
 #[derive(FromPyObject)]
@@ -100,16 +101,21 @@ impl<J: Job> Job for Brief<J> {
     }
 }
 
-/// Carries out a job in a folder; `None` where it is complete there already.
+/// Sees every value of a sweep, one at a time, on the thread that asked for it.
+pub(crate) type Eye<'a> = &'a dyn Fn(Box<Point>) -> PyResult<()>;
+
+/// Carries out a job in a folder; `None` where it is complete there already. `eye` sees what is solved, in the order in
+/// which it is.
 ///
 /// # Errors
-/// `pbif.Interrupted` with the folder when it was interrupted, whatever a signal or `tell` raised, or why the job was
-/// not carried out.
+/// `pbif.Interrupted` with the folder when it was interrupted, whatever a signal, `tell` or `eye` raised, or why the job
+/// was not carried out. What was raised has a note of where the work is kept (Python 3.11 and later).
 pub(crate) fn carried_out<J>(
     py: Python<'_>,
     job: J,
     (home, failure): (&Path, Option<&Failure>),
     how: &How<'_>,
+    eye: Option<Eye<'_>>,
 ) -> PyResult<Option<J::Found>>
 where
     J: Job + Send,
@@ -119,15 +125,23 @@ where
     let (draws, resume, threads) = (how.figures, how.resume, how.threads);
     let mut job = Brief { job, draws };
     let kept = || home.exists().then_some(home);
-    let (ended, raised) = watched(py, &cancellation, how.tell.as_ref(), failure, |tell| {
+    let hear = |heard| match (heard, eye) {
+        (Told::Solved(point), Some(eye)) => eye(point),
+        (heard, _) => tell_words(how.tell.as_ref(), heard),
+    };
+    let (is_told, is_seen) = (how.tell.is_some(), eye.is_some());
+    let ear: Option<Ear<'_>> = (is_told || is_seen).then_some(&hear);
+    let (ended, raised) = watched(py, &cancellation, ear, failure, |say| {
         let mut run = || {
             let start = if resume {
                 job.start(home)?
             } else {
                 Start::Anew
             };
-            let done = carry_out(&mut job, home, start, &cancellation, &|step| {
-                tell(told(step));
+            let done = carry_out(&mut job, home, start, &cancellation, &|step| match step {
+                Progress::Solved(point) if is_seen => say(Told::Solved(Box::new((*point).clone()))),
+                step if is_told => words(step).into_iter().for_each(say),
+                _ => (),
             })?;
             Ok((start, done))
         };
@@ -141,11 +155,15 @@ where
     });
     if let Some(raised) = raised {
         let by_hand = raised.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py);
-        return Err(if by_hand {
-            error::interrupted(py, kept())
-        } else {
-            raised
-        });
+        if by_hand {
+            return Err(error::interrupted(py, kept()));
+        }
+        if let Some(home) = kept() {
+            let note = format!("what was solved is kept in {}", home.display());
+            // Before Python 3.11 there are no notes.
+            let _ = raised.value(py).call_method1("add_note", (note,));
+        }
+        return Err(raised);
     }
     let ended = ended.map_err(|error| error::other(py, error))?;
     match ended.map_err(|error| error::job(py, &error))? {

@@ -1,6 +1,7 @@
 //! `pbif._pbif`: the library as the Python package `pbif` calls it. Nothing is computed here: texts and numbers go in,
 //! texts, arrays and exceptions come out. What a user sees, with its documentation, is in `python/pbif/`.
 
+mod arrays;
 mod drift;
 mod error;
 mod figure;

@@ -20,7 +20,7 @@ use pyo3::types::PyDict;
 use crate::error;
 use crate::figure::Figure;
 use crate::home::Home;
-use crate::watch::watched;
+use crate::watch::{Ear, Told, tell_words, watched};
 
 /// Curves or a map.
 #[pyclass(frozen, module = "pbif._pbif")]
@@ -234,9 +234,13 @@ impl Plane {
     /// The page of the explorer, as HTML; its densities are solved.
     fn page(&self, py: Python<'_>, tell: Option<Bound<'_, PyAny>>) -> PyResult<String> {
         let cancellation = Cancellation::new();
-        let (page, raised) = watched(py, &cancellation, tell.as_ref(), None, |tell| {
-            let done =
-                |done, wanted| tell(("densities of the page".to_owned(), Some((done, wanted))));
+        let hear = |told| tell_words(tell.as_ref(), told);
+        let ear: Option<Ear<'_>> = tell.is_some().then_some(&hear);
+        let (page, raised) = watched(py, &cancellation, ear, None, |say| {
+            let done = |done, wanted| {
+                let words = "densities of the page".to_owned();
+                say(Told::Words(words, Some((done, wanted))));
+            };
             match &self.content {
                 StoredPlaneContent::Map(map) => {
                     StoredPage::of_map(&self.sweep, map, &cancellation, &done)

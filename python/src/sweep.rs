@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use pbif::cancellation::Cancellation;
-use pbif::continuation::evenly_spaced;
+use pbif::continuation::{Point, evenly_spaced};
 use pbif::job::{MapJob, SweepJob};
 use pbif::run::check_names;
 use pbif::sweep_file::{Report, SweepFile};
@@ -16,7 +16,7 @@ use crate::drift::{Drift, Failure, verify};
 use crate::error;
 use crate::found::{Found, stored};
 use crate::home::Home;
-use crate::job::{How, carried_out};
+use crate::job::{Eye, How, carried_out};
 use crate::plane::{Plane, stored_plane};
 use crate::session::Session;
 use crate::watch::watched;
@@ -115,12 +115,25 @@ impl Sweep {
         Ok(about)
     }
 
-    /// Runs it in a folder, or in one that lasts as long as what is given.
-    fn run(&self, py: Python<'_>, out: Option<PathBuf>, how: How<'_>) -> PyResult<Found> {
+    /// Runs it in a folder, or in one that lasts as long as what is given. `look` is called with every value that is
+    /// found, as what a session gives.
+    fn run(
+        &self,
+        py: Python<'_>,
+        out: Option<PathBuf>,
+        how: How<'_>,
+        look: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Found> {
         let home = Arc::new(Home::new(out)?);
         let job = SweepJob::new(&self.inner);
         let failure = self.failure();
-        let found = carried_out(py, job, (home.path(), failure.as_deref()), &how)
+        let call = |look: &Bound<'_, PyAny>, point: Box<Point>| {
+            look.call1((Found::of_point(&self.inner, *point),))
+                .map(drop)
+        };
+        let eye = look.as_ref().map(|look| move |point| call(look, point));
+        let eye = eye.as_ref().map(|eye| eye as Eye<'_>);
+        let found = carried_out(py, job, (home.path(), failure.as_deref()), &how, eye)
             .inspect_err(|_| home.keep())?;
         match found {
             Some(found) => Found::of_run(py, &self.inner, found, (home, self.failure())),
@@ -133,7 +146,7 @@ impl Sweep {
         let home = Arc::new(Home::new(out)?);
         let job = MapJob::new(&self.inner);
         let failure = self.failure();
-        let found = carried_out(py, job, (home.path(), failure.as_deref()), &how)
+        let found = carried_out(py, job, (home.path(), failure.as_deref()), &how, None)
             .inspect_err(|_| home.keep())?;
         match found {
             Some(map) => Ok(Plane::of_map(&self.inner, map, home)),

@@ -4,6 +4,7 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
 use pbif::cancellation::Cancellation;
+use pbif::continuation::Point;
 use pbif::job::Progress;
 use pyo3::prelude::*;
 
@@ -12,13 +13,22 @@ use crate::drift::Failure;
 /// How often signals are asked for. An interrupt waits no longer than this before the work is asked to stop.
 const PATIENCE: Duration = Duration::from_millis(20);
 
-/// What work tells: words, and how many are done of how many where that is known.
-pub(crate) type Told = (String, Option<(usize, usize)>);
+/// What work tells.
+pub(crate) enum Told {
+    /// Words, and how many are done of how many where that is known.
+    Words(String, Option<(usize, usize)>),
+    /// A value that was solved.
+    Solved(Box<Point>),
+}
 
-/// A step of a job, as work tells it.
-pub(crate) fn told(step: &Progress<'_>) -> Told {
-    match *step {
-        Progress::Says(words) => (words.to_owned(), None),
+/// Hears what work tells.
+pub(crate) type Ear<'a> = &'a dyn Fn(Told) -> PyResult<()>;
+
+/// A step of a job in words; `None` of a value, which is told in words besides.
+pub(crate) fn words(step: &Progress<'_>) -> Option<Told> {
+    Some(match *step {
+        Progress::Solved(_) => return None,
+        Progress::Says(words) => Told::Words(words.to_owned(), None),
         Progress::Done {
             words,
             done,
@@ -28,22 +38,30 @@ pub(crate) fn told(step: &Progress<'_>) -> Told {
             words,
             done,
             wanted,
-        } => (words.to_owned(), Some((done, wanted))),
+        } => Told::Words(words.to_owned(), Some((done, wanted))),
+    })
+}
+
+/// Tells a function in Python the words.
+pub(crate) fn tell_words(function: Option<&Bound<'_, PyAny>>, told: Told) -> PyResult<()> {
+    match (told, function) {
+        (Told::Words(words, counts), Some(function)) => function.call1((words, counts)).map(drop),
+        _ => Ok(()),
     }
 }
 
-/// Carries out `work` without holding the interpreter, and calls `tell` with what it tells. A signal whose handler
-/// raises, as that of Ctrl-C does, a `tell` that raises, and a drift in Python that raises cancel the work; what was
-/// raised comes beside what it gave.
+/// Carries out `work` without holding the interpreter, and lets `ear` hear what it tells, on the thread that asked for
+/// the work, which nothing of the work waits for. A signal whose handler raises, as that of Ctrl-C does, an `ear` that
+/// raises, and a drift in Python that raises cancel the work; what was raised comes beside what it gave.
 pub(crate) fn watched<T: Send>(
     py: Python<'_>,
     cancellation: &Cancellation,
-    tell: Option<&Bound<'_, PyAny>>,
+    ear: Option<Ear<'_>>,
     failure: Option<&Failure>,
     work: impl FnOnce(&(dyn Fn(Told) + Sync)) -> T + Send,
 ) -> (T, Option<PyErr>) {
     let (say, mut said) = mpsc::channel::<Told>();
-    let wants = tell.is_some();
+    let wants = ear.is_some();
     std::thread::scope(|scope| {
         let working = scope.spawn(move || {
             work(&|told| {
@@ -59,11 +77,12 @@ pub(crate) fn watched<T: Send>(
                 let heard = said.recv_timeout(PATIENCE);
                 (said, heard)
             });
+            let has_ended = matches!(heard, Err(RecvTimeoutError::Disconnected));
             let react = || {
                 py.check_signals()?;
                 failure.map_or(Ok(()), Failure::raised)?;
-                match (&heard, tell) {
-                    (Ok((words, counts)), Some(tell)) => tell.call1((words, *counts)).map(drop),
+                match (heard, ear) {
+                    (Ok(told), Some(ear)) => ear(told),
                     _ => Ok(()),
                 }
             };
@@ -73,7 +92,7 @@ pub(crate) fn watched<T: Send>(
                 cancellation.cancel();
                 raised = Some(error);
             }
-            if heard == Err(RecvTimeoutError::Disconnected) {
+            if has_ended {
                 break;
             }
         }

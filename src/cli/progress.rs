@@ -33,7 +33,7 @@ impl Meter {
 
     /// A step of a job.
     pub(super) fn show(&self, step: &job::Progress<'_>) {
-        use job::Progress::{Done, Next, Says};
+        use job::Progress::{Done, Next, Says, Solved};
         let (words, places) = match *step {
             Says(words) => (words, None),
             Done {
@@ -46,6 +46,8 @@ impl Meter {
                 done,
                 wanted,
             } => (words, Some((done, done + 1, wanted))),
+            // Is told in words besides.
+            Solved(_) => return,
         };
         match (&self.bar, places) {
             (Some(bar), places) => {

@@ -44,7 +44,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::cancellation::Cancellation;
-use crate::continuation::{SourceError, SweepError};
+use crate::continuation::{Point, SourceError, SweepError};
 use crate::figure::{Figure, FigureError, write_figures};
 use crate::run::{Ending, JobFolder, Layout, PhaseSeconds, RunError, clear_after_kill};
 use crate::sweep_file::{Report, Sweep};
@@ -198,6 +198,9 @@ pub enum Progress<'a> {
         /// How many are wanted.
         wanted: usize,
     },
+    /// A value of a sweep with all that was found there, whether it was solved now or by an earlier process. Whoever is
+    /// told must not wait for another thread: a sweep that is solved on many tells one value at a time.
+    Solved(&'a Point),
 }
 
 /// What is to be done in a folder.

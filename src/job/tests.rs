@@ -155,3 +155,31 @@ fn a_method_of_ones_own_sweeps_is_interrupted_and_goes_on_to_the_same_bytes() {
         "methods"
     );
 }
+
+#[test]
+fn every_value_of_a_sweep_is_told_once_also_where_an_earlier_process_solved_it() {
+    let room = tempfile::tempdir().unwrap();
+    let (sweep, _) = exact();
+    let (stop, told) = (Cancellation::new(), std::sync::Mutex::new(Vec::new()));
+    let observer = |step: &Progress<'_>| match step {
+        Progress::Solved(point) => {
+            assert_eq!(point.detections.len(), point.densities.len());
+            told.lock().unwrap().push(point.value);
+        }
+        Progress::Done { done: 4, .. } => stop.cancel(),
+        _ => (),
+    };
+    let carried = |start, cancellation: &Cancellation| {
+        let mut job = SweepJob::new(&sweep);
+        let done = carry_out(&mut job, room.path(), start, cancellation, &observer);
+        let points = done.unwrap().unwrap().found.points;
+        let mut values = std::mem::take(&mut *told.lock().unwrap());
+        values.sort_by(f64::total_cmp);
+        let found: Vec<f64> = points.iter().map(|point| point.value).collect();
+        assert_eq!(values, found);
+        found.len()
+    };
+    let first = carried(Start::Anew, &stop);
+    let all = carried(Start::GoOn, &Cancellation::new());
+    assert!(4 <= first && first < all, "{first} of {all}");
+}

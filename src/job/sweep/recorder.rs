@@ -65,6 +65,7 @@ impl Recorder<'_> {
 
 impl Observer for Recorder<'_> {
     fn point(&mut self, point: &Point, done: usize, remaining: usize) -> Result<(), Failure> {
+        (self.context.observer)(&Progress::Solved(point));
         if self.source.is_stored(point.value) {
             self.missing = self.missing.saturating_sub(1);
             self.held.push(point.clone());
