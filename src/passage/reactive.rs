@@ -59,7 +59,7 @@ pub fn reactive(
         return Err(PassageError::Nowhere);
     };
     are_apart(space, [from, to])?;
-    let question = Question {
+    let question = Transitions {
         asked: Asked {
             system,
             space,
@@ -119,13 +119,13 @@ fn are_apart(space: &CellSpace, [from, to]: [&BoundQuantity; 2]) -> Result<(), P
 }
 
 /// What one grid gives: flux, rate and duration; the density, and the current along each axis.
-struct Solved {
+struct GridTransitions {
     numbers: Found,
     fields: Vec<Found>,
 }
 
 /// Transitions with what they are solved with.
-struct Question<'a> {
+struct Transitions<'a> {
     asked: Asked<'a>,
     steady: Steady<'a>,
     changes: Option<Steady<'a>>,
@@ -136,8 +136,8 @@ struct Question<'a> {
     cancellation: &'a Cancellation,
 }
 
-impl Question<'_> {
-    fn on_grid(&self, factor: f64) -> Result<Solved, PassageError> {
+impl Transitions<'_> {
+    fn on_grid(&self, factor: f64) -> Result<GridTransitions, PassageError> {
         let until = &self.asked.target.until;
         let found = cells(self.asked.system.as_ref(), self.asked.space, until, factor)?;
         let enclosed = enclosed(self.asked.system, &found);
@@ -187,7 +187,7 @@ impl Question<'_> {
         let numbers = self.flux((&stage, &start), &entering, &last, &next);
         let on_way = OnWay::new(&self.asked, &found, full, (last, next, changes));
         let numbers = self.numbers(numbers, &on_way, full, &exits);
-        Ok(Solved {
+        Ok(GridTransitions {
             numbers,
             fields: on_way.fields(&self.asked),
         })
