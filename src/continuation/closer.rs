@@ -10,6 +10,10 @@
 //! grids may agree by chance: what they show is believed where a look before, on coarser cells, has shown the same, and
 //! each row has moved by no more than order one allows. Else values are told, and that more cells are needed.
 
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+use super::counting::{CountingSource, Solves};
 use super::found::{Found, Seen};
 use super::in_doubt::{InDoubt, Watched};
 use super::label::{Label, Located};
@@ -37,8 +41,10 @@ pub(super) struct Closer<'p, 'a> {
     /// What looks count at the ends of their stretches.
     at_ends: Vec<(Observable, [f64; 2], [Signature; 2])>,
     cancellation: &'a Cancellation,
-    /// Work left, in solves of the sweep.
+    /// Work left, in values of the sweep.
     left: f64,
+    /// What the looks solve.
+    solves: Arc<Solves>,
 }
 
 /// Values of a stretch at least.
@@ -74,6 +80,7 @@ impl<'p, 'a> Closer<'p, 'a> {
             at_ends: Vec::new(),
             cancellation,
             left: options.effort * of_sweep.max(WORTH / cells),
+            solves: Arc::default(),
         }
     }
 
@@ -212,8 +219,8 @@ impl<'p, 'a> Closer<'p, 'a> {
     fn swept(&mut self, (_, observable): Watched, stretch: [f64; 2], times: u8) -> Option<Found> {
         let steps = ((stretch[1] - stretch[0]) / self.span.step).ceil() as usize;
         let values = evenly_spaced((stretch[0], stretch[1]), FEWEST.max(steps + 1));
-        let each = self.cost(times);
-        if (values.len() as f64 + BEYOND) * each > self.left || self.cancellation.is_cancelled() {
+        let planned = values.len() as f64 + BEYOND;
+        if planned * self.cost(times) > self.left || self.cancellation.is_cancelled() {
             return None;
         }
         let want = Want {
@@ -221,11 +228,12 @@ impl<'p, 'a> Closer<'p, 'a> {
             ..Want::densities(&[observable])
         };
         let source = refined(self.work.source(), &want, times).ok()??;
+        let source = CountingSource::new(source, times, &self.solves);
         self.work.tell_of_closer_look(stretch);
         let span = Span::over(stretch, values.len());
         let mut nobody = ();
         let work = Work::new(
-            (&*source, self.work.detector()),
+            (&source, self.work.detector()),
             self.cancellation,
             (&mut nobody, values.len()),
             self.options.largest_distance,
@@ -234,21 +242,19 @@ impl<'p, 'a> Closer<'p, 'a> {
         .needing_all();
         let options = Goal {
             is_closer: true,
+            effort: self.effort_of_checks(planned, times),
             ..self.options.clone()
         };
         let walk = Walk::along(&work, &values, (span, options)).ok()?;
         let is_whole = !work.has_ended() && !self.cancellation.is_cancelled();
-        // How many were solved before one that has no steady state depends on the number of threads.
-        let solved = if is_whole {
-            walk.points.len() as f64
-        } else {
-            values.len() as f64 + BEYOND
-        };
-        self.left -= solved * each;
         if !is_whole {
+            // How many were solved before one that has no steady state depends on the number of threads.
+            self.counted(times);
+            self.left -= planned * self.cost(times);
             return None;
         }
         let (labels, ..) = walk.labels(self.cancellation, Vec::new());
+        self.left -= self.counted(times);
         let rows = labels.into_iter().filter_map(|label| match label {
             Label::Bifurcation(row) => Some(*row),
             _ => None,
@@ -261,14 +267,52 @@ impl<'p, 'a> Closer<'p, 'a> {
         })
     }
 
+    /// Work for checks on cells that are refined more than once, for each of so many values of a look, in values of it
+    /// of which factors take as much as of one of the sweep: what its values leave of all work.
+    fn effort_of_checks(&self, planned: f64, times: u8) -> f64 {
+        let left = self.left - planned * self.cost(times);
+        let share = FACTORS / self.cost_of_factors(times);
+        (left.max(0.0) * share / planned).min(self.options.effort)
+    }
+
+    /// What a look with cells that are refined so many times has solved, in values of the sweep. Checks of rows, on
+    /// still finer cells, take no more than their factors do.
+    fn counted(&self, times: u8) -> f64 {
+        let all = (0..).zip(self.solves.iter());
+        let solved = all.map(|(at, solved)| (at, solved.swap(0, Ordering::Relaxed)));
+        let solved = solved.filter(|one| one.1 > 0);
+        solved
+            .map(|(at, number)| {
+                let each = if at > times {
+                    self.cost_of_factors(at)
+                } else {
+                    self.cost(at)
+                };
+                number as f64 * each
+            })
+            .sum()
+    }
+
     /// What a value costs on cells that are refined so many times, in values of the sweep.
     fn cost(&self, times: u8) -> f64 {
-        let subject = self.work.source().subject();
-        let CellCheck::OnFinerCells { ratio } = subject.cell_check else {
-            return f64::INFINITY;
-        };
-        let axes = subject.family.model().axes.len();
-        let finer = ratio.powi(i32::from(times));
-        (1.0 - FACTORS) * finer.powi(axes as i32) + work_of_factors(finer, axes)
+        let of_cells = self.finer(times).powi(self.axes() as i32);
+        (1.0 - FACTORS) * of_cells + self.cost_of_factors(times)
+    }
+
+    /// What factors take of it.
+    fn cost_of_factors(&self, times: u8) -> f64 {
+        work_of_factors(self.finer(times), self.axes())
+    }
+
+    /// How many times as many cells an axis has that is refined so many times; no end of them where it cannot be.
+    fn finer(&self, times: u8) -> f64 {
+        match self.work.source().subject().cell_check {
+            CellCheck::OnFinerCells { ratio } => ratio.powi(i32::from(times)),
+            _ => f64::INFINITY,
+        }
+    }
+
+    fn axes(&self) -> usize {
+        self.work.source().subject().family.model().axes.len()
     }
 }

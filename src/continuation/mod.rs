@@ -38,6 +38,7 @@ mod beside;
 mod bracket;
 mod change;
 mod closer;
+mod counting;
 pub mod curve;
 mod d_bifurcations;
 mod dips;
