@@ -150,14 +150,15 @@ impl<'p, 'a> Closer<'p, 'a> {
             ends,
             rows: found.rows,
         };
-        let is_proven = !found.is_wide || self.converges(&look, rows);
+        let before = self.before(&look, rows);
+        let is_proven = |row: &Located| !found.is_wide || self.is_proven(row, &before);
+        let proven: Vec<bool> = look.rows.iter().map(is_proven).collect();
+        let is_nothing = look.rows.is_empty() && found.is_wide && !before.is_empty();
         self.last.retain(|one| !one.is_at(&look));
         self.last.push(look.clone());
-        if !is_proven {
-            look.doubt();
-        }
+        look.doubt(&proven);
         // That nothing happens is no more than what two grids may agree on by chance.
-        (is_proven || !look.rows.is_empty()).then_some((look, seen))
+        (!is_nothing).then_some((look, seen))
     }
 
     /// What the sweep counts at the ends of a stretch, if finer cells count the same, or what an earlier look whose
@@ -196,23 +197,26 @@ impl<'p, 'a> Closer<'p, 'a> {
         (is_right(0) && is_right(1)).then_some(of_sweep)
     }
 
-    /// Whether a look shows what was seen there on coarser cells, and each of its rows is nearer to the row seen then
-    /// than errors of order one allow: errors that fall by the ratio r of the cells leave d / (r - 1) after a distance
-    /// d, of which the next grid takes the share (r - 1) / r.
-    fn converges(&self, look: &CloserLook, rows: &[Located]) -> bool {
+    /// What was seen on coarser cells in the stretch of a look: by the last look there, or else by the sweep.
+    fn before(&self, look: &CloserLook, rows: &[Located]) -> Vec<Located> {
+        let last = self.last.iter().find(|one| one.is_at(look));
+        let of_sweep = || rows.iter().filter(|row| look.holds(row)).cloned().collect();
+        last.map_or_else(of_sweep, |one| one.rows.clone())
+    }
+
+    /// Whether a row on wide cells is no chance: finer and finer cells came nearer and nearer to it, or one like it was
+    /// seen before, and it is nearer to that than errors of order one allow. Errors that fall by the ratio r of the
+    /// cells leave d / (r - 1) after a distance d, of which the next grid takes the share (r - 1) / r.
+    fn is_proven(&self, row: &Located, before: &[Located]) -> bool {
         let CellCheck::OnFinerCells { ratio } = self.work.source().subject().cell_check else {
             return false;
         };
-        let of_sweep = || rows.iter().filter(|row| look.holds(row)).collect();
-        let last = self.last.iter().find(|one| one.is_at(look));
-        let before: Vec<&Located> = last.map_or_else(of_sweep, |one| one.rows.iter().collect());
-        let mut pairs = before.iter().zip(&look.rows);
-        before.len() == look.rows.len()
-            && pairs.all(|(before, row)| {
-                let is_same = before.change() == row.change()
-                    && (before.before, before.after) == (row.before, row.after);
-                is_same && (before.value - row.value).abs() <= before.error * (ratio - 1.0) / ratio
-            })
+        let is_like = |one: &Located| {
+            let is_same =
+                one.change() == row.change() && (one.before, one.after) == (row.before, row.after);
+            is_same && (one.value - row.value).abs() <= one.error * (ratio - 1.0) / ratio
+        };
+        row.zero.as_ref().is_some_and(|zero| zero.is_settled) || before.iter().any(is_like)
     }
 
     /// What finer cells show in a stretch; `None` where there are none, or no work is left for them.

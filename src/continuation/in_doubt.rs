@@ -166,7 +166,7 @@ fn has_surfaces_in_cells(point: &Point) -> bool {
 }
 
 /// Where a row may lie.
-fn hull(row: &Located) -> [f64; 2] {
+pub(super) fn hull(row: &Located) -> [f64; 2] {
     [
         row.lower.min(row.value - row.error),
         row.upper.max(row.value + row.error),

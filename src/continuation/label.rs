@@ -91,6 +91,10 @@ pub struct Zero {
     pub slope: f64,
     /// Parts of the error of the value.
     pub parts: ErrorParts,
+    /// Whether three grids or more were asked, and distances between one and the next fell as order one has it, or
+    /// faster. Not stored.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub is_settled: bool,
 }
 
 impl Label {

@@ -131,9 +131,9 @@ pub(super) fn by_indicator(
         Doubt::GridCheckOff
     };
     let is_unchecked = on_finer.is_none() && depends_on_cells;
-    let refined = match on_finer {
-        Some(Ok(times)) => times,
-        _ => 0,
+    let (refined, is_settled) = match on_finer {
+        Some(Ok(Refined { times, is_settled })) => (times, is_settled),
+        _ => (0, false),
     };
     let mut densities = Vec::from_iter(instead_of_zero(points, crossing, detector));
     densities.extend(against(
@@ -178,6 +178,7 @@ pub(super) fn by_indicator(
             place: checked.place.to_vec(),
             slope: zero.slope,
             parts: zero.error,
+            is_settled,
         }),
         doubts: at_rest.into_iter().chain(evidence.doubts()).collect(),
         ..band(&subject.observables, change, (0.0, 0.0, 0.0), None)
@@ -215,19 +216,29 @@ struct Cells<'a> {
     is_wide: bool,
 }
 
-/// Moves a zero to where finer cells have it, and finer ones again where their error exceeds the tolerance; returns how
-/// often they were refined, or what they say against it.
+/// What finer cells have said of a zero.
+#[derive(Debug, Clone, Copy)]
+struct Refined {
+    /// How often they were refined.
+    times: u8,
+    /// See [`Zero::is_settled`].
+    is_settled: bool,
+}
+
+/// Moves a zero to where finer cells have it, and finer ones again where their error exceeds the tolerance, or where
+/// two grids alone may agree by chance; returns what they say of it, or against it.
 fn on_finer_cells(
     zero: &mut Root,
     checked: &Checked<'_>,
     cells: Cells<'_>,
     options: &Goal,
     checks: &mut dyn Checks,
-) -> Option<Result<u8, Doubt>> {
+) -> Option<Result<Refined, Doubt>> {
     let Cells { density, share, .. } = cells;
     let chance = by_chance(density, checked.place);
     let (mut own, mut expected) = (zero.error.grid, 0.0);
     let mut found = None;
+    let mut distances = Vec::new();
     // What is stated at least as long as two grids alone agree.
     let mut untold = None;
     for times in 1..=MOST_TIMES {
@@ -237,6 +248,7 @@ fn on_finer_cells(
         };
         match checks.on_finer_cells(&again, times) {
             Some(Ok(finer)) => {
+                distances.push((finer.value - zero.value).abs());
                 let distance = share * chance * (finer.value - zero.value).abs();
                 // What a forcing carries to and fro is off by no more than the schemes differ on the finer cells, of
                 // which the value is.
@@ -251,7 +263,8 @@ fn on_finer_cells(
                 zero.error.grid = at_least(grid, (own, least), chance, density, options);
                 zero.value = finer.value;
                 (own, expected) = (finer.error, distance / fall(cells.check));
-                found = Some(Ok(times));
+                let is_settled = are_settled(&distances, cells.check);
+                found = Some(Ok(Refined { times, is_settled }));
                 let is_suspect = times == 1 && finer.error > SUSPECT * zero.error.grid;
                 untold = is_suspect.then_some(UNTOLD * finer.error);
             }
@@ -262,7 +275,8 @@ fn on_finer_cells(
         }
         let ErrorParts { grid, .. } = zero.error;
         let is_known = zero.error.total() <= options.tolerance || grid < 0.5 * zero.error.total();
-        if is_known && untold.is_none() {
+        let is_by_chance = cells.is_wide && options.is_closer && times == 1;
+        if is_known && untold.is_none() && !is_by_chance {
             break;
         }
     }
@@ -270,6 +284,16 @@ fn on_finer_cells(
         zero.error.grid = zero.error.grid.max(least);
     }
     found
+}
+
+/// Whether distances between values on finer and finer cells fall as order one has it, or faster. Two grids tell
+/// nothing of that.
+fn are_settled(distances: &[f64], check: CellCheck) -> bool {
+    let CellCheck::OnFinerCells { ratio } = check else {
+        return false;
+    };
+    let mut pairs = distances.windows(2);
+    distances.len() > 1 && pairs.all(|pair| pair[1] * ratio <= pair[0])
 }
 
 pub(super) fn has_wide_cells(point: &Point) -> bool {

@@ -1,5 +1,6 @@
 //! What a closer look has found, and how its rows take the place of those of the sweep.
 
+use super::in_doubt::hull;
 use super::label::{self, Label, Located};
 use super::{BifurcationStatus, Doubt, Point};
 use crate::density::Observable;
@@ -35,9 +36,10 @@ impl CloserLook {
         (self.observable, self.stretch) == (other.observable, other.stretch)
     }
 
-    /// Says of its rows that more cells are needed.
-    pub(super) fn doubt(&mut self) {
-        for row in &mut self.rows {
+    /// Says of those of its rows that are not proven that more cells are needed.
+    pub(super) fn doubt(&mut self, is_proven: &[bool]) {
+        let rows = self.rows.iter_mut().zip(is_proven);
+        for (row, _) in rows.filter(|one| !one.1) {
             row.doubts.push(Doubt::CoarseCells(row.error, None));
         }
     }
@@ -62,6 +64,7 @@ impl CloserLook {
             }
             Told::Bands => false,
         };
+        let is_more = is_more || self.is_narrower(&before);
         if is_more {
             *rows = others;
             rows.extend_from_slice(&self.rows);
@@ -69,6 +72,26 @@ impl CloserLook {
         }
         is_more
     }
+
+    /// Whether rows, none of which two grids may agree on by chance, leave a shorter stretch in doubt than others, with
+    /// no fewer located.
+    fn is_narrower(&self, before: &[Located]) -> bool {
+        let is_by_chance =
+            |row: &Located| row.doubts.contains(&Doubt::CoarseCells(row.error, None));
+        let located = |rows: &[Located]| rows.iter().filter(|row| is_located(row)).count();
+        let in_doubt = |rows: &[Located]| -> f64 {
+            let rows = rows.iter().filter(|row| !is_located(row));
+            rows.map(hull).map(|[lower, upper]| upper - lower).sum()
+        };
+        let is_new = before.is_empty() && !self.rows.is_empty();
+        !self.rows.iter().any(is_by_chance)
+            && located(before) <= located(&self.rows)
+            && (is_new || in_doubt(&self.rows) < in_doubt(before))
+    }
+}
+
+fn is_located(row: &Located) -> bool {
+    row.status() == BifurcationStatus::Located
 }
 
 /// How much rows tell of what happens in a stretch.
@@ -83,7 +106,6 @@ enum Told {
 
 impl Told {
     fn by(rows: &[Located]) -> Self {
-        let is_located = |row: &Located| row.status() == BifurcationStatus::Located;
         let has_value = |row: &Located| {
             let reason = row.reason();
             reason.is_none_or(|one| matches!(one, Doubt::CoarseCells(..) | Doubt::SolverError(_)))

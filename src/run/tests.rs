@@ -249,6 +249,7 @@ fn tables_for_people_round_to_the_error() {
         place: vec![0.0],
         slope: -1.0,
         parts: ErrorParts::default(),
+        is_settled: false,
     };
     let row = Label::Bifurcation(Box::new(Located {
         label: "PB1".into(),

@@ -20,7 +20,7 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 use pbif::cancellation::Cancellation;
-use pbif::continuation::{BifurcationStatus, LocateOptions, Located, sweep};
+use pbif::continuation::{BifurcationStatus, Label, LocateOptions, Located, sweep};
 use pbif::density::Observable;
 use pbif::method::{GeneratorMethodOptions, GeneratorSource, Problem};
 use pbif::space::{Axis, CellSpace};
@@ -352,7 +352,7 @@ fn potential(seed: u64) -> Option<Case> {
     })
 }
 
-fn solve(case: &Case) -> Vec<Located> {
+fn solve(case: &Case) -> Found {
     let effort = std::env::var("EFFORT").map_or(1.0, |x| x.parse().unwrap());
     solve_with(
         case,
@@ -363,7 +363,13 @@ fn solve(case: &Case) -> Vec<Located> {
     )
 }
 
-fn solve_with(case: &Case, locate: &LocateOptions) -> Vec<Located> {
+/// What a sweep tells: rows, and stretches in which it finds no steady state on its cells.
+struct Found {
+    rows: Vec<Located>,
+    failures: Vec<[f64; 2]>,
+}
+
+fn solve_with(case: &Case, locate: &LocateOptions) -> Found {
     let observable = match case.axes.len() {
         1 => Observable::Marginal(0),
         _ => Observable::Joint(0, 1),
@@ -383,7 +389,14 @@ fn solve_with(case: &Case, locate: &LocateOptions) -> Vec<Located> {
         &mut (),
     )
     .unwrap();
-    found.bifurcations().cloned().collect()
+    let failures = found.labels.iter().filter_map(|label| match label {
+        Label::Failure { lower, upper, .. } => Some([*lower, *upper]),
+        _ => None,
+    });
+    Found {
+        rows: found.bifurcations().cloned().collect(),
+        failures: failures.collect(),
+    }
 }
 
 /// How rows and truths compare.
@@ -400,7 +413,8 @@ struct Score {
 }
 
 impl Score {
-    fn of(case: &Case, rows: &[Located]) -> Self {
+    /// Changes where no steady state was found count as those in a band.
+    fn of(case: &Case, Found { rows, failures }: &Found) -> Self {
         let is_located = |row: &Located| row.status() == BifurcationStatus::Located;
         let holds = |row: &Located, truth: f64| match is_located(row) {
             true => (row.value - truth).abs() <= row.error,
@@ -418,10 +432,15 @@ impl Score {
             .iter()
             .filter(|truth| found(truth, true))
             .count();
+        let is_told = |truth: f64| {
+            let mut failures = failures.iter();
+            found(&truth, false)
+                || failures.any(|[lower, upper]| (*lower..=*upper).contains(&truth))
+        };
         let band = case
             .truths
             .iter()
-            .filter(|truth| !found(truth, true) && found(truth, false))
+            .filter(|truth| !found(truth, true) && is_told(**truth))
             .count();
         let wrong = |located: bool| {
             let of = rows.iter().filter(|row| is_located(row) == located);
@@ -464,8 +483,11 @@ impl Score {
     }
 }
 
-fn told(case: &Case, rows: &[Located]) -> String {
+fn told(case: &Case, Found { rows, failures }: &Found) -> String {
     let mut text = format!("{}\n  changes at {:?}\n", case.words, case.truths);
+    if !failures.is_empty() {
+        writeln!(text, "  no steady state in {failures:?}").unwrap();
+    }
     for row in rows {
         writeln!(
             text,
@@ -490,15 +512,15 @@ fn told(case: &Case, rows: &[Located]) -> String {
 fn run(cases: impl Iterator<Item = (u64, Case)>) -> Vec<(&'static str, Score)> {
     let mut scores: Vec<(&'static str, Score)> = Vec::new();
     for (seed, case) in cases {
-        let rows = solve(&case);
-        let score = Score::of(&case, &rows);
+        let found = solve(&case);
+        let score = Score::of(&case, &found);
         if score.missed + score.false_located + score.bands_without + score.in_band > 0 {
             println!(
                 "seed {seed}: missed {}, false {}, bands without {}\n{}",
                 score.missed,
                 score.false_located,
                 score.bands_without,
-                told(&case, &rows)
+                told(&case, &found)
             );
         }
         match scores.iter_mut().find(|one| one.0 == case.family) {

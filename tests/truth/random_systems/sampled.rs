@@ -119,9 +119,14 @@ fn run_sampled(
                 points: 21,
                 truths: system.truths.clone(),
             };
-            let score = Score::of(&case, &rows);
-            println!("{}", told(&case, &rows));
-            let ratios = rows
+            let found = Found {
+                rows,
+                failures: Vec::new(),
+            };
+            let score = Score::of(&case, &found);
+            println!("{}", told(&case, &found));
+            let ratios = found
+                .rows
                 .iter()
                 .map(|row| (row.value - system.truths[0]) / row.error);
             match scores.iter_mut().find(|one| one.0 == system.family) {
