@@ -14,7 +14,7 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use super::counting::{CountingSource, Solves};
-use super::found::{Found, Seen};
+use super::found::Found;
 use super::in_doubt::{InDoubt, Watched};
 use super::label::{Label, Located};
 use super::live::{FACTORS, refined, work_of_factors};
@@ -100,11 +100,15 @@ impl<'p, 'a> Closer<'p, 'a> {
                 let observables = self.work.source().subject().observables.iter();
                 for (place, &observable) in observables.enumerate() {
                     for stretch in self.in_doubt.stretches(rows, (place, observable), times) {
-                        let found = self.look((place, observable), stretch, times, rows);
-                        if let Some((look, seen)) = found
-                            && look.replace(rows)
-                        {
-                            self.seen.extend(seen);
+                        let of = (place, observable);
+                        let Some((look, found)) = self.look(of, stretch, times, rows) else {
+                            continue;
+                        };
+                        let is_taken = look.replace(rows);
+                        self.in_doubt
+                            .settle((place, look.stretch), &found, is_taken);
+                        if is_taken {
+                            self.seen.extend(found.seen(observable));
                             looks.push(look);
                         }
                     }
@@ -122,13 +126,14 @@ impl<'p, 'a> Closer<'p, 'a> {
         mut stretch: [f64; 2],
         times: u8,
         rows: &[Located],
-    ) -> Option<(CloserLook, Vec<Seen>)> {
+    ) -> Option<(CloserLook, Found)> {
         for _ in 0..2 {
             let found = self.swept(of, stretch, times)?;
             let ends = self.ends(&found, of, stretch);
             let is_better = found.is_better(self.in_doubt.points(), of.0, stretch);
             if let Some(ends) = ends.filter(|_| is_better) {
-                return self.believed(found, (of, stretch, ends), rows);
+                let look = self.believed(&found, (of, stretch, ends), rows)?;
+                return Some((look, found));
             }
             stretch = self.in_doubt.next_wider(stretch, rows, of.1)?;
         }
@@ -138,27 +143,25 @@ impl<'p, 'a> Closer<'p, 'a> {
     /// What is believed of what finer cells show of a stretch, between ends at which they are right.
     fn believed(
         &mut self,
-        found: Found,
+        found: &Found,
         (of, stretch, ends): (Watched, [f64; 2], [Signature; 2]),
         rows: &[Located],
-    ) -> Option<(CloserLook, Vec<Seen>)> {
-        self.in_doubt.settle(&found, (of.0, stretch));
-        let seen = found.seen(of.1);
+    ) -> Option<CloserLook> {
         let mut look = CloserLook {
             observable: of.1,
             stretch,
             ends,
-            rows: found.rows,
+            rows: found.rows.clone(),
         };
         let before = self.before(&look, rows);
         let is_proven = |row: &Located| !found.is_wide || self.is_proven(row, &before);
         let proven: Vec<bool> = look.rows.iter().map(is_proven).collect();
-        let is_nothing = look.rows.is_empty() && found.is_wide && !before.is_empty();
         self.last.retain(|one| !one.is_at(&look));
         self.last.push(look.clone());
         look.doubt(&proven);
         // That nothing happens is no more than what two grids may agree on by chance.
-        (!is_nothing).then_some((look, seen))
+        let is_chance = look.rows.is_empty() && found.is_wide && !before.is_empty();
+        (!is_chance).then_some(look)
     }
 
     /// What the sweep counts at the ends of a stretch, if finer cells count the same, or what an earlier look whose

@@ -68,14 +68,19 @@ impl<'p> InDoubt<'p> {
         found
     }
 
-    /// Forgets of a stretch what finer cells have settled there: whether a pair is there, where they are not wide; that
-    /// something is there on wide ones.
-    pub(super) fn settle(&mut self, found: &Found, (place, [lower, upper]): (usize, [f64; 2])) {
+    /// Forgets of a stretch what finer cells have settled there, whether a pair is there: those that are not wide, or,
+    /// where the sweep's are wide, those whose rows were taken.
+    pub(super) fn settle(
+        &mut self,
+        (place, [lower, upper]): (usize, [f64; 2]),
+        by: &Found,
+        is_taken: bool,
+    ) {
         let is_there = |one: &(usize, f64)| one.0 == place && (lower..=upper).contains(&one.1);
-        if !found.is_wide || !found.rows.is_empty() {
+        if !by.is_wide || is_taken {
             self.wide.retain(|one| !is_there(one));
         }
-        if found.is_sure && !found.is_wide {
+        if by.is_sure && !by.is_wide {
             self.unsure.retain(|one| !is_there(one));
         }
     }

@@ -188,14 +188,8 @@ pub(super) fn by_indicator(
 /// The highest order of a scheme.
 const ORDER: i32 = 5;
 
-/// By how much a distance to finer cells may fall when these are refined once more. Values that agree better do so by
-/// chance.
-fn fall(check: CellCheck) -> f64 {
-    match check {
-        CellCheck::OnFinerCells { ratio } => ratio.powi(ORDER),
-        CellCheck::Impossible | CellCheck::Needless => 1.0,
-    }
-}
+/// The order of which a scheme is sure beside a bend on faces of its cells.
+const ORDER_AT_BEND: i32 = 2;
 
 /// How many times as much as is stated the schemes may differ on finer cells: two grids that agree better than that may
 /// do so by chance, and a third one is asked.
@@ -235,7 +229,7 @@ fn on_finer_cells(
     checks: &mut dyn Checks,
 ) -> Option<Result<Refined, Doubt>> {
     let Cells { density, share, .. } = cells;
-    let chance = by_chance(density, checked.place);
+    let kinks = Kinks::near(density, checked.place);
     let (mut own, mut expected) = (zero.error.grid, 0.0);
     let mut found = None;
     let mut distances = Vec::new();
@@ -248,8 +242,8 @@ fn on_finer_cells(
         };
         match checks.on_finer_cells(&again, times) {
             Some(Ok(finer)) => {
-                distances.push((finer.value - zero.value).abs());
-                let distance = share * chance * (finer.value - zero.value).abs();
+                let distance = (finer.value - zero.value).abs();
+                distances.push(distance);
                 // What a forcing carries to and fro is off by no more than the schemes differ on the finer cells, of
                 // which the value is.
                 let least = if cells.is_forced {
@@ -259,10 +253,12 @@ fn on_finer_cells(
                 };
                 // Where cells are wide it may be off by as much as that.
                 let by_schemes = if cells.is_wide { finer.error } else { 0.0 };
-                let grid = distance.max(expected).max(by_schemes);
-                zero.error.grid = at_least(grid, (own, least), chance, density, options);
+                let claimed = kinks.share(times, share, cells.check) * distance;
+                let grid = claimed.max(expected).max(by_schemes);
+                zero.error.grid = at_least(grid, (own, least), kinks, density, options);
                 zero.value = finer.value;
-                (own, expected) = (finer.error, distance / fall(cells.check));
+                own = finer.error;
+                expected = kinks.share(2, share, cells.check) * distance / kinks.fall(cells.check);
                 let is_settled = are_settled(&distances, cells.check);
                 found = Some(Ok(Refined { times, is_settled }));
                 let is_suspect = times == 1 && finer.error > SUSPECT * zero.error.grid;
@@ -341,11 +337,11 @@ fn against(
 fn at_least(
     distance: f64,
     (before, both): (f64, f64),
-    chance: f64,
+    kinks: Kinks,
     density: &EstimatedDensity,
     options: &Goal,
 ) -> f64 {
-    let is_blurred = chance > 1.0 && density.density.axes.len() > 1;
+    let is_blurred = kinks != Kinks::None && density.density.axes.len() > 1;
     if is_blurred && density.is_by_quadrature() {
         // No scheme takes part in closed forms that another source gives on cells. What the generator finds by
         // quadrature does not come here: its indicators follow from a profile, which no cells change.
@@ -369,26 +365,64 @@ const REACH: usize = 4;
 /// By how much a distance to finer cells may be too small by chance there.
 const CHANCE: f64 = 10.0;
 
-/// By how much a distance to finer cells may be too small by chance at a place. Where a kink lies inside a cell, its
-/// place in the cell differs from grid to grid, and the error with it. At a bend that a scheme has followed the order
-/// of the scheme is not known. Elsewhere it is one.
-fn by_chance(estimated: &EstimatedDensity, place: &[f64]) -> f64 {
-    let is_cut = |kink: &Kink| {
-        let Some((axis, place)) = estimated
-            .density
-            .axes
-            .get(kink.axis)
-            .zip(place.get(kink.axis))
-        else {
-            return false;
+/// The kinks beside a place, by what they do to the errors of cells there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kinks {
+    /// None, or jumps on faces, whose sizes are known.
+    None,
+    /// A bend on a face of these cells and of finer ones: the order of a scheme that follows it is low.
+    BendOnFace,
+    /// One inside a cell, whose place in the cell differs from grid to grid, and the error with it.
+    Cut,
+}
+
+impl Kinks {
+    fn near(estimated: &EstimatedDensity, place: &[f64]) -> Self {
+        let of_one = |kink: &Kink| {
+            let axis = estimated.density.axes.get(kink.axis)?;
+            let cells = axis.find(kink.at).zip(axis.find(*place.get(kink.axis)?))?;
+            let is_near = cells.0.abs_diff(cells.1) <= REACH;
+            let is_blurred = kink.is_bend() && !estimated.is_by_quadrature();
+            match (is_near, axis.has_face_at(kink.at)) {
+                (true, false) => Some(Self::Cut),
+                (true, true) if is_blurred => Some(Self::BendOnFace),
+                _ => None,
+            }
         };
-        let cells = axis.find(kink.at).zip(axis.find(*place));
-        let is_blurred = kink.is_bend() && !estimated.is_by_quadrature();
-        let is_near = cells.is_some_and(|(a, b)| a.abs_diff(b) <= REACH);
-        is_near && (is_blurred || !axis.has_face_at(kink.at))
-    };
-    let mut kinks = estimated.structure.kinks.iter();
-    if kinks.any(is_cut) { CHANCE } else { 1.0 }
+        let near: Vec<Self> = estimated
+            .structure
+            .kinks
+            .iter()
+            .filter_map(of_one)
+            .collect();
+        match near.contains(&Self::Cut) {
+            true => Self::Cut,
+            false => near.first().copied().unwrap_or(Self::None),
+        }
+    }
+
+    /// What is claimed of a distance to cells that are refined for so many times, from what is claimed where there are
+    /// no kinks. Two grids may agree by chance; beside a bend on faces a third one tells, and order one is claimed.
+    fn share(self, times: u8, share: f64, check: CellCheck) -> f64 {
+        match (self, times) {
+            (Self::None, _) => share,
+            (Self::BendOnFace, 2..) => share_of_distance(check, false),
+            _ => CHANCE * share,
+        }
+    }
+
+    /// By how much a distance to finer cells may fall when these are refined once more: values that agree better than
+    /// that do so by chance.
+    fn fall(self, check: CellCheck) -> f64 {
+        let order = match self {
+            Self::BendOnFace => ORDER_AT_BEND,
+            Self::None | Self::Cut => ORDER,
+        };
+        match check {
+            CellCheck::OnFinerCells { ratio } => ratio.powi(order),
+            CellCheck::Impossible | CellCheck::Needless => 1.0,
+        }
+    }
 }
 
 /// Mass in the outermost cells below which what leaves Ω matters nowhere.
