@@ -147,7 +147,7 @@ fn wrong_questions_are_refused_with_their_place_and_a_remedy() {
         ("abs(x) < 0.5", "abs(x)", ["neither an inequality", "and `not`"]),
         ("abs(x) < 0.5", "k < 0.5", ["depends on no coordinate", "near"]),
         ("x > 2 or far", "x > 2 or", ["an inequality is missing", "between"]),
-        ("x > 2 or far", "fra", ["`fra` is neither", "between"]),
+        ("x > 2 or far", "fra", ["`fra` is neither", "did you mean `far`"]),
         ("[passage]", "[levels]\nleve_mean = 3.0\n[passage]", ["`leve_mean` is no number of this sweep", "leave_mean"]),
         ("start = { x = 0 }, ", "", ["does not say where it starts", "start = { x = 0 }"]),
         ("start = { x = 0 }", "start = { y = 0 }", ["`y` is no coordinate", "no axis"]),

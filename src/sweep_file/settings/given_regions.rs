@@ -3,7 +3,7 @@
 use crate::sweep_file::diagnostic::{Diagnostic, Place};
 use crate::sweep_file::formula_place::inside;
 use crate::sweep_file::reader::Reader;
-use crate::system::RegionError;
+use crate::system::{RegionError, RegionFault};
 
 /// An inequality as it was given.
 pub(super) struct Given {
@@ -69,8 +69,12 @@ pub(super) fn refuse(reader: &mut Reader<'_>, passage: &str, title: String, reme
     reader.report(diagnostic.at(place, "this passage"));
 }
 
-/// What is wrong with an inequality, at its place.
-pub(super) fn diagnostic(reader: &Reader<'_>, one: &Given, error: &RegionError) -> Diagnostic {
+/// What is wrong with an inequality, at its place; `named` are those that others can call by their names.
+pub(super) fn diagnostic(
+    reader: &Reader<'_>,
+    (one, named): (&Given, &[Given]),
+    error: &RegionError,
+) -> Diagnostic {
     let diagnostic = Diagnostic::new(format!("region `{}`: {}", one.name, error.fault));
     let diagnostic = match &error.span {
         Some(span) => {
@@ -79,5 +83,12 @@ pub(super) fn diagnostic(reader: &Reader<'_>, one: &Given, error: &RegionError) 
         }
         None => diagnostic.at(&one.place, "this region"),
     };
-    diagnostic.advice(error.fault.allowed(), error.fault.remedy())
+    let diagnostic = diagnostic.advice(error.fault.allowed(), error.fault.remedy());
+    match &error.fault {
+        RegionFault::NoInequality { text } => {
+            let names = named.iter().map(|one| one.name.as_str());
+            diagnostic.nearest(text, names.filter(|name| *name != one.name))
+        }
+        _ => diagnostic,
+    }
 }

@@ -57,7 +57,8 @@ pub(super) fn read(
                 .into_iter()
                 .filter(|error| !given[error.index].is_joined);
             for error in own {
-                let diagnostic = diagnostic(reader, &given[error.index], &error);
+                let one = (&given[error.index], &given[..named]);
+                let diagnostic = diagnostic(reader, one, &error);
                 reader.report(diagnostic);
             }
             return (Vec::new(), Vec::new());
