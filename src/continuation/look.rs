@@ -84,7 +84,7 @@ impl CloserLook {
             rows.map(hull).map(|[lower, upper]| upper - lower).sum()
         };
         let is_new = before.is_empty() && !self.rows.is_empty();
-        !self.rows.iter().any(is_by_chance)
+        !self.rows.iter().any(is_contradicted)
             && located(before) <= located(&self.rows)
             && (is_new || in_doubt(&self.rows) < in_doubt(before))
     }
