@@ -73,11 +73,14 @@ impl CloserLook {
         is_more
     }
 
-    /// Whether rows, none of which two grids may agree on by chance, leave a shorter stretch in doubt than others, with
-    /// no fewer located.
+    /// Whether rows that two grids do not agree on by chance, and that neither finer cells nor other rows contradict,
+    /// leave a shorter stretch in doubt than others, with no fewer located.
     fn is_narrower(&self, before: &[Located]) -> bool {
-        let is_by_chance =
-            |row: &Located| row.doubts.contains(&Doubt::CoarseCells(row.error, None));
+        let is_contradicted = |row: &Located| {
+            row.status() == BifurcationStatus::Unconfirmed
+                || row.doubts.contains(&Doubt::DoesNotContinue)
+                || row.doubts.contains(&Doubt::CoarseCells(row.error, None))
+        };
         let located = |rows: &[Located]| rows.iter().filter(|row| is_located(row)).count();
         let in_doubt = |rows: &[Located]| -> f64 {
             let rows = rows.iter().filter(|row| !is_located(row));
