@@ -52,7 +52,7 @@ impl<'p> InDoubt<'p> {
             .filter(|row| row.observable == of.1 && is_of_cells(row));
         let unsure = self.unsure.iter().chain(&self.wide);
         let unsure = unsure.filter(|one| one.0 == of.0 && times <= MOST_UNCOUNTED);
-        let in_doubt = (in_doubt.map(hull)).chain(unsure.map(|one| [one.1; 2]));
+        let in_doubt = (in_doubt.map(Located::hull)).chain(unsure.map(|one| [one.1; 2]));
         let mut in_doubt: Vec<[f64; 2]> = in_doubt.collect();
         in_doubt.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let mut found: Vec<[f64; 2]> = Vec::new();
@@ -121,14 +121,14 @@ impl<'p> InDoubt<'p> {
                 .iter()
                 .filter(|row| row.observable == observable)
                 .find(|row| {
-                    let [lower, upper] = hull(row);
+                    let [lower, upper] = row.hull();
                     let is_inside = stretch[0] < lower && upper < stretch[1];
                     let is_at_end = stretch == self.wider([lower, upper], 0.0);
                     let is_outside = upper < stretch[0] || stretch[1] < lower;
                     !is_inside && !is_outside && !is_at_end
                 });
             let Some(cut) = cut else { break };
-            let [lower, upper] = hull(cut);
+            let [lower, upper] = cut.hull();
             let wider = self.wider([lower.min(stretch[0]), upper.max(stretch[1])], 0.0);
             if wider == stretch {
                 break;
@@ -168,14 +168,6 @@ fn has_surfaces_in_cells(point: &Point) -> bool {
             Finding::SurfaceOffFaces { .. } | Finding::JumpInsideCells { .. }
         )
     })
-}
-
-/// Where a row may lie.
-pub(super) fn hull(row: &Located) -> [f64; 2] {
-    [
-        row.lower.min(row.value - row.error),
-        row.upper.max(row.value + row.error),
-    ]
 }
 
 /// Whether finer cells may tell more of a row.

@@ -269,6 +269,14 @@ impl Located {
         self.doubts.first()
     }
 
+    /// Where it may lie: its interval with its bracket.
+    pub(super) fn hull(&self) -> [f64; 2] {
+        [
+            self.lower.min(self.value - self.error),
+            self.upper.max(self.value + self.error),
+        ]
+    }
+
     /// The indicator whose zero it is.
     pub fn indicator(&self) -> Option<IndicatorKind> {
         self.zero.as_ref().map(|zero| zero.indicator)

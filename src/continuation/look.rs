@@ -1,6 +1,5 @@
 //! What a closer look has found, and how its rows take the place of those of the sweep.
 
-use super::in_doubt::hull;
 use super::label::{self, Label, Located};
 use super::{BifurcationStatus, Doubt, Point};
 use crate::density::Observable;
@@ -84,7 +83,9 @@ impl CloserLook {
         let located = |rows: &[Located]| rows.iter().filter(|row| is_located(row)).count();
         let in_doubt = |rows: &[Located]| -> f64 {
             let rows = rows.iter().filter(|row| !is_located(row));
-            rows.map(hull).map(|[lower, upper]| upper - lower).sum()
+            rows.map(Located::hull)
+                .map(|[lower, upper]| upper - lower)
+                .sum()
         };
         let is_new = before.is_empty() && !self.rows.is_empty();
         !self.rows.iter().any(is_contradicted)
