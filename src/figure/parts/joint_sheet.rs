@@ -123,21 +123,26 @@ fn with_lines(
     });
     let lines: Vec<String> = lettered.collect();
     let sheet = arranged(widest(look, &lines));
-    if sheet.columns > 1 || found.len() <= MOST_IN_A_TOWER {
+    // What stands above a single column may reach into the gap before the bar, whose title is beside it.
+    let has_room = |words: &[String]| widest(look, words) <= sheet.side.0 + 0.5 * BETWEEN;
+    if sheet.columns > 1 || (found.len() <= MOST_IN_A_TOWER && has_room(&lines)) {
         return (sheet, lines);
     }
     let barer: [Vec<String>; 2] = [
         found.iter().map(at).collect(),
         found.iter().map(short).collect(),
     ];
-    for words in barer {
-        let is_told_apart = words.windows(2).all(|pair| pair[0] != pair[1]);
-        let wider = arranged(widest(look, &words));
-        if wider.columns > 1 && is_told_apart {
-            return (wider, words);
+    let is_told_apart = |words: &[String]| words.windows(2).all(|pair| pair[0] != pair[1]);
+    for words in barer.iter().filter(|words| is_told_apart(words)) {
+        let wider = arranged(widest(look, words));
+        if wider.columns > 1 {
+            return (wider, words.clone());
         }
     }
-    (sheet, lines)
+    let mut fitting = [&lines].into_iter().chain(&barer);
+    let fitting = fitting.find(|words| has_room(words) && is_told_apart(words));
+    let words = fitting.cloned().unwrap_or_else(|| lines.clone());
+    (sheet, words)
 }
 
 /// Writes the largest density into the lower right corner of a map whose colours it scales, on the colour of no
