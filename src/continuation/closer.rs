@@ -7,8 +7,9 @@
 //! [`super::LocateOptions::effort`] allows; what they leave in doubt as well stays as the sweep has it.
 //!
 //! Order one is all that is claimed of finer cells. Where they are wide themselves ([`super::Finding::WideCells`]) two
-//! grids may agree by chance: what they show is believed where a look before, on coarser cells, has shown the same, and
-//! each row has moved by no more than order one allows. Else values are told, and that more cells are needed.
+//! grids may agree by chance: a row is believed where three grids or more came nearer and nearer to it, or where a look
+//! before, on coarser cells, has shown it too, no farther than order one allows. Else its value is told, and that more
+//! cells are needed. All that looks solve counts as work, the checks of their rows too.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;

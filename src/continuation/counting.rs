@@ -10,7 +10,7 @@ use crate::cancellation::Cancellation;
 pub(super) type Solves = [AtomicUsize; MOST_REFINED];
 
 /// Refinements that are told from each other; more often refined cells are counted as the last of them.
-pub(super) const MOST_REFINED: usize = 16;
+const MOST_REFINED: usize = 16;
 
 /// Counts the solves of a source. The counts do not depend on the number of threads once all sessions have ended.
 pub(super) struct CountingSource {

@@ -9,13 +9,14 @@ use super::doubt::{Doubt, Evidence, WiderRange};
 use super::follow::{Course, Crossing};
 use super::grid::{Checked, Checks, share_of_distance};
 use super::jump::instead_of_zero;
+use super::kinks::Kinks;
 use super::label::{self, Label, Located, Zero};
 use super::levels::crossings;
 use super::measure::NUMERICAL_DIFFUSION;
 use super::root::{Root, root};
 use super::rows::{doubt_what_does_not_continue, in_order, inseparable, merge, without_flicker};
 use super::{CellCheck, ErrorParts, Finding, Goal, Point, Subject};
-use crate::density::{EstimatedDensity, Kink};
+use crate::density::EstimatedDensity;
 use crate::topology::{Detector, Indicator};
 
 /// All labelled points of a sweep, in ascending parameter. `points` must be ascending.
@@ -185,12 +186,6 @@ pub(super) fn by_indicator(
     }
 }
 
-/// The highest order of a scheme.
-const ORDER: i32 = 5;
-
-/// The order of which a scheme is sure beside a bend on faces of its cells.
-const ORDER_AT_BEND: i32 = 2;
-
 /// How many times as much as is stated the schemes may differ on finer cells: two grids that agree better than that may
 /// do so by chance, and a third one is asked.
 const SUSPECT: f64 = 4.0;
@@ -358,72 +353,6 @@ fn at_least(
 /// Share of the tolerance below which no error is claimed where a scheme takes part: two grids may agree that well by
 /// chance.
 const LEAST_CLAIM: f64 = 1e-2;
-
-/// Cells on either side of a place that what is read there depends on.
-const REACH: usize = 4;
-
-/// By how much a distance to finer cells may be too small by chance there.
-const CHANCE: f64 = 10.0;
-
-/// The kinks beside a place, by what they do to the errors of cells there.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kinks {
-    /// None, or jumps on faces, whose sizes are known.
-    None,
-    /// A bend on a face of these cells and of finer ones: the order of a scheme that follows it is low.
-    BendOnFace,
-    /// One inside a cell, whose place in the cell differs from grid to grid, and the error with it.
-    Cut,
-}
-
-impl Kinks {
-    fn near(estimated: &EstimatedDensity, place: &[f64]) -> Self {
-        let of_one = |kink: &Kink| {
-            let axis = estimated.density.axes.get(kink.axis)?;
-            let cells = axis.find(kink.at).zip(axis.find(*place.get(kink.axis)?))?;
-            let is_near = cells.0.abs_diff(cells.1) <= REACH;
-            let is_blurred = kink.is_bend() && !estimated.is_by_quadrature();
-            match (is_near, axis.has_face_at(kink.at)) {
-                (true, false) => Some(Self::Cut),
-                (true, true) if is_blurred => Some(Self::BendOnFace),
-                _ => None,
-            }
-        };
-        let near: Vec<Self> = estimated
-            .structure
-            .kinks
-            .iter()
-            .filter_map(of_one)
-            .collect();
-        match near.contains(&Self::Cut) {
-            true => Self::Cut,
-            false => near.first().copied().unwrap_or(Self::None),
-        }
-    }
-
-    /// What is claimed of a distance to cells that are refined for so many times, from what is claimed where there are
-    /// no kinks. Two grids may agree by chance; beside a bend on faces a third one tells, and order one is claimed.
-    fn share(self, times: u8, share: f64, check: CellCheck) -> f64 {
-        match (self, times) {
-            (Self::None, _) => share,
-            (Self::BendOnFace, 2..) => share_of_distance(check, false),
-            _ => CHANCE * share,
-        }
-    }
-
-    /// By how much a distance to finer cells may fall when these are refined once more: values that agree better than
-    /// that do so by chance.
-    fn fall(self, check: CellCheck) -> f64 {
-        let order = match self {
-            Self::BendOnFace => ORDER_AT_BEND,
-            Self::None | Self::Cut => ORDER,
-        };
-        match check {
-            CellCheck::OnFinerCells { ratio } => ratio.powi(order),
-            CellCheck::Impossible | CellCheck::Needless => 1.0,
-        }
-    }
-}
 
 /// Mass in the outermost cells below which what leaves Ω matters nowhere.
 pub(super) const QUIET: f64 = 1e-11;

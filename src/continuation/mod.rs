@@ -53,6 +53,7 @@ mod found;
 mod grid;
 mod in_doubt;
 mod jump;
+mod kinks;
 mod label;
 mod levels;
 mod live;
