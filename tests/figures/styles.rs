@@ -285,7 +285,7 @@ fn with_labels(result: &mut SweepResult, count: usize) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 6, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 4, ..ProptestConfig::default() })]
 
     #[test]
     fn figures_read_at_any_size(width in 60.0..400.0f64, share in 0.0..1.0f64, scale in -3.0..3.0f64, count in 0..14usize) {

@@ -11,7 +11,7 @@ use crate::common::room::{Printed, Room, assert_same};
 /// Sweeps that differ in what a session remembers (factors and trails, with and without mass that leaves; masses;
 /// nothing) and in what densities are on (cells, bins of quantities, a series).
 const SWEEPS: [&str; 7] = [
-    "coulomb_fc.toml cells.x.count=24 cells.y.count=24 sweep.points=25 locate.tolerance=1e-3 locate.effort=0.1",
+    "coulomb_fc.toml cells.x.count=24 cells.y.count=24 sweep.points=25 locate.tolerance=1e-3 locate.effort=0.02",
     "coulomb_fc.toml cells.x={from=-3.0,to=3.0,count=24} cells.y={from=-3.0,to=3.0,count=24} sweep.points=7 \
      locate.tolerance=1e-3",
     // Damped well, so that trajectories forget their start soon.
@@ -19,7 +19,7 @@ const SWEEPS: [&str; 7] = [
      cells.x.count=20 cells.y.count=20 sweep.points=5 locate.tolerance=5e-3",
     "bistable.toml method.kind=monte-carlo method.error=0.3 sweep.points=5 locate.tolerance=0.5",
     "bistable.toml sweep.points=9",
-    "rayleigh_energy.toml cells.x.count=24 cells.y.count=24 sweep.points=7 locate.effort=0.1",
+    "rayleigh_energy.toml cells.x.count=24 cells.y.count=24 sweep.points=7 locate.effort=0.02",
     "gallery/coloured_bistable.toml detect.marginals=[\"x\",\"noise\"] cells.x.count=60 sweep.points=7 \
      locate.tolerance=1e-3",
 ];

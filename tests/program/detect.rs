@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use crate::common::room::{Printed, Room, assert_same};
 use crate::common::table::Table;
 
-const GENERATOR: &str = "method.kind=generator cells.x.count=24 cells.y.count=24 sweep.points=4 locate.tolerance=5e-3 locate.effort=0.1";
+const GENERATOR: &str = "method.kind=generator cells.x.count=24 cells.y.count=24 sweep.points=4 locate.tolerance=5e-3 locate.effort=0.02";
 /// So narrow ranges that what leaves them, most of it along y, is the reason of a row.
 const ESCAPING: &str = "method.kind=generator cells.x={from=-5.5,to=5.5,count=30} \
                         cells.y={from=-5.5,to=5.5,count=30} sweep.points=7 locate.tolerance=1e-3 \

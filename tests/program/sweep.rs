@@ -201,7 +201,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
         let one = on(1);
         let files =
             "features.csv bifurcations.csv densities.zarr/p_xy/c/0/0/0 figures/diagram_x.svg";
-        for threads in [2, 3, 16] {
+        for threads in [3, 16] {
             let other = on(threads);
             for file in files.split(' ').chain(more.split_whitespace()) {
                 let file = format!("run/{file}");

@@ -201,7 +201,13 @@ fn a_band_holds_what_is_read_beside_a_fixed_point() {
 
 #[test]
 fn cells_are_refined_until_values_are_as_certain_as_wanted() {
-    assert_right(of(&["coupled", "dimentberg", "van_der_pol"]));
+    assert_right(of(&["coupled", "dimentberg"]));
+}
+
+#[test]
+#[ignore = "a quarter of a minute: cells are refined thrice for a value that stays unresolved"]
+fn the_crater_of_van_der_pols_oscillator_is_in_its_band_at_length() {
+    assert_right(of(&["van_der_pol"]));
 }
 
 #[test]

@@ -167,15 +167,26 @@ fn exponents_along_densities_are_those_of_neighbouring_paths() {
 
 /// Noise at the temperature a half; nothing blurs the angle beside the saddle.
 #[test]
-fn a_double_well_has_the_exponent_of_neighbouring_paths_on_either_side_of_chaos() {
-    for (damping, drift) in [(0.3, "x - x^3 - 0.3*y"), (0.8, "x - x^3 - 0.8*y")] {
-        let amplitude = format!("{}", f64::sqrt(damping));
-        let noises = [("y", amplitude.as_str())];
-        let typed: Typed<'_> = (["y", drift], &noises);
-        let (value, deviation) = by_paths(typed, 0.0, (0.01, 100_000));
-        let found = by_angles(typed, 0.0, [2.7, 3.6], 48);
-        assert_near(found, (value, 3.0 * deviation), 5e-3);
+fn a_chaotic_double_well_has_the_exponent_of_neighbouring_paths() {
+    assert_double_well(0.3, 25_000, 40);
+}
+
+#[test]
+#[ignore = "a minute: longer paths, and weaker than chaos too"]
+fn a_double_well_has_the_exponent_of_neighbouring_paths_on_either_side_of_chaos_at_length() {
+    for damping in [0.3, 0.8] {
+        assert_double_well(damping, 100_000, 48);
     }
+}
+
+fn assert_double_well(damping: f64, steps: usize, cells: usize) {
+    let drift = format!("x - x^3 - {damping}*y");
+    let amplitude = format!("{}", damping.sqrt());
+    let noises = [("y", amplitude.as_str())];
+    let typed: Typed<'_> = (["y", &drift], &noises);
+    let (value, deviation) = by_paths(typed, 0.0, (0.01, steps));
+    let found = by_angles(typed, 0.0, [2.7, 3.6], cells);
+    assert_near(found, (value, 3.0 * deviation), 5e-3);
 }
 
 /// An oscillator with random coefficients, and a box about it.

@@ -190,7 +190,8 @@ fn what_coarse_cells_leave_in_doubt_is_located_on_finer_ones() {
 /// it is born: less than what differences between schemes are off by where they need say no more than how large errors
 /// are.
 #[test]
-fn a_peak_five_orders_of_magnitude_lower_is_located() {
+#[ignore = "half a minute: what finer cells do for a peak that is not low is tried always"]
+fn a_peak_five_orders_of_magnitude_lower_is_located_at_length() {
     let [coarse, closer] = without_and_with_closer_looks(848_010);
     assert_eq!((coarse.located, coarse.in_band), (0, 2));
     assert_eq!((closer.located, closer.located_right), (2, 2));
@@ -207,7 +208,8 @@ fn what_wide_cells_do_not_count_at_the_ends_of_a_sweep_is_told_by_finer_ones() {
 /// A force of the power 3/2 bends inside a cell, and no value of the sweep on 45 × 45 cells shows the two peaks that
 /// last for less than two of its steps. Cells are not wide there, and finer ones have a face on the bend.
 #[test]
-fn a_pair_beside_a_bend_inside_a_cell_is_told_by_finer_cells() {
+#[ignore = "half a minute: what three grids do beside a bend is tried always, of rows alone"]
+fn a_pair_beside_a_bend_inside_a_cell_is_told_by_finer_cells_at_length() {
     let [coarse, closer] = without_and_with_closer_looks(1_688_003);
     assert_eq!((coarse.missed, coarse.in_band), (2, 0));
     assert_eq!((closer.missed, closer.false_located), (0, 0));
