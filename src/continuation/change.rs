@@ -141,7 +141,8 @@ fn between(
     found
 }
 
-/// What follows an event. A critical point that stays, on a line of symmetry, goes before a fold. Where counts follow
+/// What follows an event. A critical point that stays, on a line of symmetry, goes before a fold, but where a force bends
+/// between it and its saddle: curvatures jump there, and what passes zero is the slope. Where counts follow
 /// from the equations, a change of sign at which the count stays is another event's: a peak that was born on a flank
 /// before it reaches a kink. Then its inflection is followed in place of the kink.
 fn decisive(
@@ -151,6 +152,13 @@ fn decisive(
     gap: (usize, usize),
     event: &Event,
 ) -> Option<Course> {
+    let density = &points[gap.0].densities[observable];
+    if event.is_across_bend(density) {
+        let course = follow(points, detector, observable, gap, event);
+        if let Some(Course::Crossing(_)) = course {
+            return course;
+        }
+    }
     for event in event.at_symmetry() {
         let course = follow(points, detector, observable, gap, &event);
         if let Some(Course::Crossing(_)) = course {

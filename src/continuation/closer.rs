@@ -253,7 +253,8 @@ impl<'p, 'a> Closer<'p, 'a> {
             effort: self.effort_of_checks(planned, times),
             ..self.options.clone()
         };
-        let walk = Walk::along(&work, &values, (span, options)).ok()?;
+        let most = self.left / self.cost(times) - values.len() as f64;
+        let walk = Walk::along(&work, (&values, most as usize), (span, options)).ok()?;
         let is_whole = !work.has_ended() && !self.cancellation.is_cancelled();
         if !is_whole {
             // How many were solved before one that has no steady state depends on the number of threads.

@@ -54,6 +54,22 @@ impl Event {
         })
     }
 
+    /// Whether the density bends at a plane between the critical point of a joint density and the one that it is born
+    /// with.
+    pub(super) fn is_across_bend(&self, density: &EstimatedDensity) -> bool {
+        let kinks = density.structure.kinks.iter();
+        let Some((_, between)) =
+            (self.indicator.as_ref()).filter(|one| one.0 == IndicatorKind::FOLD)
+        else {
+            return false;
+        };
+        let mut bends = kinks.filter(|kink| kink.is_bend() && kink.axis < between.len());
+        bends.any(|kink| {
+            let (own, middle) = (self.place[kink.axis], between[kink.axis]);
+            (kink.at - middle).abs() <= (own - middle).abs()
+        })
+    }
+
     /// The same as a critical point that stays and changes its type, where the density is symmetric about it: the peak
     /// or crater itself, or the saddle that it grows from.
     pub(super) fn at_symmetry(&self) -> Vec<Self> {

@@ -50,10 +50,10 @@ impl<'p> InDoubt<'p> {
         let in_doubt = rows
             .iter()
             .filter(|row| row.observable == of.1 && is_of_cells(row))
-            .filter(|row| self.have_modes(row.hull()));
+            .filter(|row| !self.lacks_modes(row.hull()));
         let unsure = self.unsure.iter().chain(&self.wide);
         let unsure = unsure.filter(|one| one.0 == of.0 && times <= MOST_UNCOUNTED);
-        let unsure = unsure.filter(|one| self.have_modes([one.1; 2]));
+        let unsure = unsure.filter(|one| !self.lacks_modes([one.1; 2]));
         let in_doubt = (in_doubt.map(Located::hull)).chain(unsure.map(|one| [one.1; 2]));
         let mut in_doubt: Vec<[f64; 2]> = in_doubt.collect();
         in_doubt.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -70,11 +70,14 @@ impl<'p> InDoubt<'p> {
         found
     }
 
-    /// Whether there are modes enough at some value of a stretch: finer cells mend nothing where they are too few.
-    fn have_modes(&self, [lower, upper]: [f64; 2]) -> bool {
-        let mut inside = (self.points.iter()).filter(|one| (lower..=upper).contains(&one.value));
+    /// Whether modes are too few at all values of a stretch: finer cells mend nothing there.
+    fn lacks_modes(&self, [lower, upper]: [f64; 2]) -> bool {
+        let inside = (self.points.iter()).filter(|one| (lower..=upper).contains(&one.value));
         let has_few = |one: &Finding| matches!(one, Finding::FewModes { .. });
-        inside.any(|point| !point.report.findings.iter().any(has_few))
+        let few: Vec<bool> = inside
+            .map(|point| point.report.findings.iter().any(has_few))
+            .collect();
+        !few.is_empty() && few.iter().all(|&is_few| is_few)
     }
 
     /// Forgets of a stretch what finer cells have settled there, whether a pair is there: those that are not wide, or,

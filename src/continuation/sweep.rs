@@ -60,7 +60,7 @@ pub(crate) fn sweep_shard(
         // Where it is not the first of the sweep, the first value may fail.
         values.first().copied().filter(|_| shard.number() == 1),
     );
-    let walk = Walk::along(&work, values, (span, options.clone()))?;
+    let walk = Walk::along(&work, (values, usize::MAX), (span, options.clone()))?;
     let (labels, checks, mut unchecked) = walk.labels(cancellation, known);
     // What lies about the ends of a shard is known to the whole sweep alone.
     let (labels, looks) = if shard == Shard::WHOLE {

@@ -39,13 +39,14 @@ pub(super) struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    /// Solves values and what lies between them, until every change is as narrow as wanted.
+    /// Solves values and what lies between them, until every change is as narrow as wanted, with no more between them
+    /// than `most`.
     ///
     /// # Errors
     /// [`SweepError`] when a value is not allowed or the observer fails.
     pub(super) fn along(
         work: &'a Work<'a>,
-        values: &[f64],
+        (values, most): (&[f64], usize),
         (span, options): (Span, Goal),
     ) -> Result<Self, SweepError> {
         let mut walk = Self {
@@ -60,7 +61,7 @@ impl<'a> Walk<'a> {
             unsure: Vec::new(),
         };
         walk.walk()?;
-        walk.narrow(MOST_EXTRA.max(MOST_EXTRA_A_VALUE * values.len()))?;
+        walk.narrow(most.min(MOST_EXTRA.max(MOST_EXTRA_A_VALUE * values.len())))?;
         // Checks are solved in sessions of their own.
         walk.segments.clear();
         Ok(walk)

@@ -61,6 +61,11 @@ impl AxisGeometry {
         let count = axis.count();
         let damping = damping(space);
         let noisy = system.is_noisy(index);
+        // Where no noise acts, a derivative of the density jumps with the drift or its slope: stencils stay on one side.
+        let breaks = match noisy || axis.is_modes() {
+            true => Vec::new(),
+            false => surface_faces(system, index, axis),
+        };
         let end = |wall: bool| if wall { End::Wall } else { End::Open };
         Self {
             nodes: axis.nodes().to_vec(),
@@ -72,11 +77,12 @@ impl AxisGeometry {
                 .walls(index, (axis.from(), axis.to()))
                 .map(end),
             stencils: (0..=count)
-                .map(|face| stencil(scheme, damping, face, count - face))
+                .map(|face| stencil(scheme, damping, (face, count), &breaks))
                 .collect(),
             reach: match (axis.is_modes(), noisy) {
                 (true, _) => count - 1,
                 (false, true) => REACH,
+                (false, false) if !breaks.is_empty() => REACH,
                 (false, false) => scheme.reach(),
             },
             modes: ModeAxis::new(axis),
@@ -133,10 +139,18 @@ fn damping(space: &CellSpace) -> f64 {
     }
 }
 
-/// The stencil of a face with that many cells below and above it.
-fn stencil(scheme: AdvectiveScheme, damping: f64, below: usize, above: usize) -> FaceStencil {
+/// The stencil of a face of so many cells. Stencils of fluxes do not reach past breaks, but for stretches of too few
+/// cells.
+fn stencil(
+    scheme: AdvectiveScheme,
+    damping: f64,
+    (face, count): (usize, usize),
+    breaks: &[usize],
+) -> FaceStencil {
+    let (below, above) = (face, count - face);
     let cells = below.min(above);
-    let (central, dissipation) = scheme.symmetric(cells);
+    let (central, dissipation) =
+        beside_breaks(scheme, face, count, breaks).unwrap_or_else(|| scheme.symmetric(cells));
     let dissipation = dissipation.map(|weight| damping * weight);
     let derivative = match cells {
         0 => [0.0; 2 * REACH],
@@ -148,5 +162,29 @@ fn stencil(scheme: AdvectiveScheme, damping: f64, below: usize, above: usize) ->
         dissipation,
         derivative,
         corrected: cells >= 2,
+    }
+}
+
+/// Fluxes through a face that has a break on it, or so near that its stencil would reach past it.
+fn beside_breaks(
+    scheme: AdvectiveScheme,
+    face: usize,
+    count: usize,
+    breaks: &[usize],
+) -> Option<(Window, Window)> {
+    let is_near = |at: &&usize| at.abs_diff(face) < REACH;
+    breaks.iter().find(is_near)?;
+    if face == 0 || face == count {
+        return None;
+    }
+    let last = breaks.iter().filter(|at| **at < face).max();
+    let next = breaks.iter().filter(|at| **at > face).min();
+    let below = face - last.copied().unwrap_or(0);
+    let above = next.copied().unwrap_or(count) - face;
+    let is_wide = below.min(above) >= REACH || !breaks.contains(&face);
+    match (breaks.contains(&face), is_wide) {
+        (true, true) => scheme.one_sided((below, 0), (above, 0)),
+        (false, _) => scheme.one_sided((below, above), (above, below)),
+        (true, false) => None,
     }
 }

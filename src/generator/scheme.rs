@@ -73,4 +73,40 @@ impl AdvectiveScheme {
             Self::Central4 | Self::Central6 => (central, [0.0; 6]),
         }
     }
+
+    /// The same of a face near which the density is not smooth, of the numbers of cells behind and ahead of it in which
+    /// it is, for what flows from below and for what flows from above: the mean of both fluxes, and half of what they
+    /// differ by. Central minus or plus dissipation is one of them. `None` where no cell is left behind the face.
+    pub(super) fn one_sided(
+        self,
+        from_below: (usize, usize),
+        from_above: (usize, usize),
+    ) -> Option<(Window, Window)> {
+        let up = upwind(from_below)?;
+        let mut down = upwind(from_above)?;
+        down.reverse();
+        let of = |sign: f64| std::array::from_fn(|k| 0.5 * (down[k] + sign * up[k]));
+        let dissipation = match self {
+            Self::Upwind5 => of(-1.0),
+            Self::Central4 | Self::Central6 => [0.0; 6],
+        };
+        Some((of(1.0), dissipation))
+    }
+}
+
+/// Weights of the flux through a face from below, by the polynomial through the averages of at most three cells below
+/// and two above.
+fn upwind(cells: (usize, usize)) -> Option<Window> {
+    let sixth = 1.0 / 6.0;
+    Some(match cells {
+        (0, _) => return None,
+        (1, 0) => [0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
+        (1, 1) => [0.0, 0.0, 0.5, 0.5, 0.0, 0.0],
+        (1, _) => [0.0, 0.0, 2.0, 5.0, -1.0, 0.0].map(|weight| sixth * weight),
+        (2, 0) => [0.0, -0.5, 1.5, 0.0, 0.0, 0.0],
+        (2, _) => [0.0, -1.0, 5.0, 2.0, 0.0, 0.0].map(|weight| sixth * weight),
+        (_, 0) => [2.0, -7.0, 11.0, 0.0, 0.0, 0.0].map(|weight| sixth * weight),
+        (_, 1) => [1.0, -5.0, 13.0, 3.0, 0.0, 0.0].map(|weight| weight / 12.0),
+        (..) => [2.0, -13.0, 47.0, 27.0, -3.0, 0.0].map(|weight| weight / 60.0),
+    })
 }

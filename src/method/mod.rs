@@ -62,6 +62,7 @@ pub(crate) use range::{PILOT_BOX, RangeError, automatic_ranges};
 pub(crate) use sgcm::SgcmCost;
 pub use sgcm::{Corrected, Correction, SgcmOptions, SgcmSource, solve_corrected};
 pub(crate) use sticking::check_sticking;
+pub(crate) use structure::fixed_surfaces;
 pub use time_step::StepChoice;
 
 use crate::cancellation::Cancelled;

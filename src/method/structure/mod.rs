@@ -58,7 +58,7 @@ pub(super) fn all_kinked_surfaces(
 }
 
 /// The places of the switching surfaces across an axis that stay where they are all along the sweep.
-pub(super) fn fixed_surfaces(systems: &[Arc<dyn System>], axis: usize) -> Vec<f64> {
+pub(crate) fn fixed_surfaces(systems: &[Arc<dyn System>], axis: usize) -> Vec<f64> {
     let Some((first, others)) = systems.split_first() else {
         return Vec::new();
     };

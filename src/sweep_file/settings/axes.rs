@@ -8,6 +8,7 @@ use super::axis_checks::{
 };
 use super::equations::model_in_words;
 use super::modes_of::ModesOf;
+use crate::method::fixed_surfaces;
 use crate::space::{Axis, CellSpace, Grading, SpaceError};
 use crate::sweep_file::diagnostic::Diagnostic;
 use crate::sweep_file::document::Document;
@@ -243,7 +244,8 @@ fn build_axis(
     Err(Box::new(diagnostic.at(place, "refused")))
 }
 
-/// The cell space of axes of which nothing is left to the program.
+/// The cell space of axes of which nothing is left to the program, with faces on all planes across an axis at which the
+/// drift is not smooth all along the sweep: what is not smooth inside a cell is not seen there, however small the cell.
 ///
 /// # Errors
 /// The finding where the space refuses them, or something is left to the program.
@@ -254,6 +256,7 @@ pub(in crate::sweep_file) fn cell_space(
     method: MethodKind,
 ) -> Result<CellSpace, Box<Diagnostic>> {
     let mut built = Vec::new();
+    let systems = family.along().unwrap_or_default();
     for (index, settings) in axes.iter().enumerate() {
         let name = family.axis(index);
         let Some(axis) = build_axis(document, name, settings, method)? else {
@@ -261,7 +264,7 @@ pub(in crate::sweep_file) fn cell_space(
             let diagnostic = Diagnostic::new(title).remedy("give numbers, or prepare the sweep");
             return Err(Box::new(at_cells(document, diagnostic)));
         };
-        built.push(axis);
+        built.push(axis.with_faces_on(&fixed_surfaces(&systems, index)));
     }
     CellSpace::new(built).map_err(|error| {
         let diagnostic = Diagnostic::new(error.to_string());
