@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::banded_tests::null_vector;
 use super::{AdvectiveScheme, GeneratorOptions, assemble, automatic_grading, cell_masses};
 use crate::space::{Axis, CellSpace};
-use crate::system::{Lanes, Noise, System, registry};
+use crate::system::{Lanes, Noise, System, TypedModel, registry};
 
 fn bound(model: &str, given: &[(&str, f64)]) -> Arc<dyn System> {
     registry::find(model).unwrap().system_with(given).unwrap()
@@ -233,4 +233,47 @@ fn a_hysteretic_oscillator_keeps_its_mass_within_the_walls() {
         negative[0] < 0.02 && negative[1] < 0.8 * negative[0],
         "{negative:?}"
     );
+}
+
+/// y' = -κ y + f(x) + √s ξ with a force that bends at c: the density is exp(-2κ/s (y²/2 + V(x))).
+const BENT: (f64, f64, f64) = (0.8, 0.6, 0.177);
+
+/// By how much the slope of log p at the bend is off, on the line of cells above y = 0: the mean of the slopes at the bend
+/// of the parabolas through the errors of three cells on either side.
+fn slope_error_at_bend(count: usize) -> f64 {
+    let (kappa, s, c) = BENT;
+    let model = TypedModel::new("bent", "A force that bends", ["x", "y"])
+        .with_equation("x", "y")
+        .with_equation("y", format!("-{kappa} y - x^3 + 1.5 abs(x - {c})"))
+        .with_noise("y", [format!("sqrt({s})")])
+        .build()
+        .unwrap();
+    let system = model.system_with(&[]).unwrap();
+    let x = Axis::uniform(-2.7, 2.9, count).unwrap().with_faces_on(&[c]);
+    let space = CellSpace::new(vec![x, Axis::uniform(-4.0, 4.0, count).unwrap()]).unwrap();
+    let masses = steady_masses(&*system, &space, AdvectiveScheme::default());
+    let potential = |x: f64| 0.25 * x.powi(4) - 0.75 * (x - c) * (x - c).abs();
+    let axis = &space.axes()[0];
+    let above = axis.face_at(c).unwrap();
+    let off = |cell: usize| {
+        let (from, width) = (axis.edges()[cell], axis.width(cell));
+        let value = |x: f64| (-2.0 * kappa / s * potential(x)).exp();
+        let places = (0..64).map(|place| from + width * (f64::from(place) + 0.5) / 64.0);
+        let exact = places.map(value).sum::<f64>() * width / 64.0;
+        (masses[cell * count + count / 2] / exact).ln()
+    };
+    let slope = |cells: [usize; 3]| {
+        let [near, middle, far] = cells.map(off);
+        (2.0 * near - 3.0 * middle + far) / axis.width(cells[0])
+    };
+    let below = slope([above - 1, above - 2, above - 3]);
+    0.5 * (below - slope([above, above + 1, above + 2])).abs()
+}
+
+/// Stencils across the bend make it an error of order one, of 2e-2 on 90 cells.
+#[test]
+fn the_slope_where_a_force_bends_is_of_order_two() {
+    let [coarse, fine] = [60, 90].map(slope_error_at_bend);
+    let order = (coarse / fine).ln() / 1.5_f64.ln();
+    assert!(order > 1.8 && fine < 3e-3, "{coarse:e} {fine:e}: {order}");
 }

@@ -53,8 +53,15 @@ fn fold(estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicator> {
         cells.fold(0.0, f64::max)
     };
     let farthest = smooth.as_ref().map_or(FARTHEST, |place| away(place));
-    if let Some(found) = at_bend(estimated, &field, near).filter(|one| away(&one.place) < farthest)
-    {
+    // Curvatures within few cells of a bend are not known well enough to tell an extremum there from that at the bend.
+    let is_beside = |one: &AtBend| {
+        let width = field.cell_width(one.across, near[one.across]) * field.unit(one.across);
+        smooth.as_ref().is_some_and(|place| {
+            (place[one.across] - one.place[one.across]).abs() <= BLURRED * width
+        })
+    };
+    let at_bend = at_bend(estimated, &field, near);
+    if let Some(found) = at_bend.filter(|one| away(&one.place) < farthest || is_beside(one)) {
         return found.indicator(estimated, &field);
     }
     let place = smooth?;
