@@ -166,6 +166,14 @@ fn axis_fluxes<const N: usize>(
         |sampler, (number, fluxes)| {
             sampler.state = line_start(first, strides, axis, number);
             sampler.sample(&first[axis].nodes, &quadrature)?;
+            for (other, geometry) in first.iter().enumerate() {
+                let cell = cell_on(first, strides, axis, number, other);
+                if let Some(face) = geometry.break_beside(cell).filter(|_| other != axis) {
+                    let (plane, nodes) = (geometry.edges[face], &geometry.nodes);
+                    let beside = [nodes[face - 1], nodes[face]];
+                    sampler.correct((other, plane), beside, &first[axis].nodes, &quadrature)?;
+                }
+            }
             sampler.line.prepare(&first[axis]);
             for (axes, fluxes) in axes.iter().zip(fluxes) {
                 sampler.line.fluxes(&axes[axis], fluxes);
@@ -203,6 +211,19 @@ fn axis_blocks(
             },
         )?;
     Ok(blocks)
+}
+
+/// The cell on another axis that a line along an axis goes through.
+fn cell_on(
+    axes: &[AxisGeometry],
+    strides: &[usize],
+    axis: usize,
+    number: usize,
+    other: usize,
+) -> usize {
+    let (outer, inner) = (number / strides[axis], number % strides[axis]);
+    let first = outer * strides[axis] * axes[axis].count() + inner;
+    first / strides[other] % axes[other].count()
 }
 
 /// Nodes of the first cell of a line along an axis.

@@ -45,6 +45,8 @@ pub(super) struct AxisGeometry {
     pub(super) stencils: Vec<FaceStencil>,
     /// Cells on either side that an entry of the matrix may reach.
     pub(super) reach: usize,
+    /// Inner faces on which a derivative of the density jumps, past which no stencil of a flux reaches.
+    pub(super) breaks: Vec<usize>,
     /// Of an axis of modes, what tests them.
     pub(super) modes: Option<ModeAxis>,
 }
@@ -85,8 +87,15 @@ impl AxisGeometry {
                 (false, false) if !breaks.is_empty() => REACH,
                 (false, false) => scheme.reach(),
             },
+            breaks,
             modes: ModeAxis::new(axis),
         }
+    }
+
+    /// The break that a cell has on one of its faces.
+    pub(super) fn break_beside(&self, cell: usize) -> Option<usize> {
+        let mut breaks = self.breaks.iter().copied();
+        breaks.find(|&face| face == cell || face == cell + 1)
     }
 
     /// As [`Self::new`], with all or half of the dissipation of the fluxes.
@@ -183,8 +192,8 @@ fn beside_breaks(
     let above = next.copied().unwrap_or(count) - face;
     let is_wide = below.min(above) >= REACH || !breaks.contains(&face);
     match (breaks.contains(&face), is_wide) {
-        (true, true) => scheme.one_sided((below, 0), (above, 0)),
-        (false, _) => scheme.one_sided((below, above), (above, below)),
+        (true, true) => Some(scheme.at_break()),
+        (false, _) => scheme.one_sided(below, above),
         (true, false) => None,
     }
 }

@@ -57,6 +57,16 @@ fn fitted_rate(rest: f64, diffusion: f64, width: f64) -> f64 {
 }
 
 impl Line {
+    /// All that was sampled: drift and diffusion at the nodes, and at the quadrature points.
+    pub(super) fn samples(&mut self) -> [&mut Vec<f64>; 4] {
+        [
+            &mut self.drift,
+            &mut self.inner_drift,
+            &mut self.diffusion,
+            &mut self.inner_diffusion,
+        ]
+    }
+
     /// Makes of the samples what the fluxes of all schemes share.
     pub(super) fn prepare(&mut self, axis: &AxisGeometry) {
         self.speed.clear();

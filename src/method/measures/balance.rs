@@ -172,11 +172,14 @@ impl Terms {
                     .zip(cells.weights)
                     .map(|(b, a)| b - a)
                     .collect();
+                // Forces bend or jump there, whatever the density does.
+                let surfaces = cells.system.facts().switching_surfaces.iter();
+                let planes: Vec<(usize, f64)> = surfaces.map(|one| (one.axis, one.at)).collect();
                 let roughness = Roughness {
                     space: cells.space,
                     weights: cells.weights,
                     differences: &differences,
-                    planes: cells.planes,
+                    planes: &planes,
                 };
                 Some((relative(second) - value).abs() + roughness.of(&self.left) / scale)
             }
