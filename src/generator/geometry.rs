@@ -66,7 +66,7 @@ impl AxisGeometry {
         // Where no noise acts, a derivative of the density jumps with the drift or its slope: stencils stay on one side.
         let breaks = match noisy || axis.is_modes() {
             true => Vec::new(),
-            false => surface_faces(system, index, axis),
+            false => breaks(system, index, space),
         };
         let end = |wall: bool| if wall { End::Wall } else { End::Open };
         Self {
@@ -138,6 +138,51 @@ pub(super) fn surface_faces(system: &dyn System, index: usize, axis: &Axis) -> V
         .collect()
 }
 
+/// Inner faces of an axis without noise on which the drift jumps or bends most, each with as many cells as a stencil
+/// takes on either side before the next one or an end. The others are left to stencils across them.
+fn breaks(system: &dyn System, index: usize, space: &CellSpace) -> Vec<usize> {
+    let axis = &space.axes()[index];
+    let mut found: Vec<(f64, usize)> = surface_faces(system, index, axis)
+        .into_iter()
+        .filter(|face| (REACH..=axis.count().saturating_sub(REACH)).contains(face))
+        .map(|face| (sharpness(system, (index, face), space), face))
+        .collect();
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut kept: Vec<usize> = Vec::new();
+    for (_, face) in found {
+        if kept.iter().all(|other| other.abs_diff(face) >= REACH) {
+            kept.push(face);
+        }
+    }
+    kept.sort_unstable();
+    kept
+}
+
+/// By how much the drift changes its slope at a face, summed over what it moves, at the middle of the other axes and at
+/// two places aside; where the drift jumps that is a large number.
+fn sharpness(system: &dyn System, (index, face): (usize, usize), space: &CellSpace) -> f64 {
+    let axis = &space.axes()[index];
+    let step = 1e-4 * axis.width(face);
+    let places = [0.31, 0.5, 0.73].into_iter().map(|share| {
+        let ends = space.axes().iter();
+        let mut state: Vec<f64> = ends
+            .map(|one| one.from() + share * (one.to() - one.from()))
+            .collect();
+        let [far_below, below, above, far_above] = [-2.0, -1.0, 1.0, 2.0].map(|steps| {
+            state[index] = axis.edges()[face] + steps * step;
+            system.drift_at(0.0, &state)
+        });
+        let components = 0..below.len();
+        let changes = components.map(|k| {
+            let slopes = [far_above[k] - above[k], below[k] - far_below[k]];
+            let jump = 2.0 * (above[k] - below[k]) - (far_above[k] - far_below[k]);
+            ((slopes[0] - slopes[1]).abs() + jump.abs()) / step
+        });
+        changes.sum::<f64>()
+    });
+    places.fold(0.0, f64::max)
+}
+
 /// Share of the upwind scheme's dissipation that the cells of a space need.
 fn damping(space: &CellSpace) -> f64 {
     let mut series = space.axes().iter().map(Axis::series);
@@ -190,10 +235,8 @@ fn beside_breaks(
     let next = breaks.iter().filter(|at| **at > face).min();
     let below = face - last.copied().unwrap_or(0);
     let above = next.copied().unwrap_or(count) - face;
-    let is_wide = below.min(above) >= REACH || !breaks.contains(&face);
-    match (breaks.contains(&face), is_wide) {
-        (true, true) => Some(scheme.at_break()),
-        (false, _) => scheme.one_sided(below, above),
-        (true, false) => None,
+    match breaks.contains(&face) {
+        true => Some(scheme.at_break()),
+        false => scheme.one_sided(below, above),
     }
 }

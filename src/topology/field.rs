@@ -11,8 +11,12 @@ use super::reconstruction::{Weights, interpolating};
 use crate::density::{EstimatedDensity, Kink};
 use crate::space::Axis;
 
-/// Half the number of cells of a window, in the finer and the rougher reconstruction.
-const REACH: [usize; 2] = [4, 3];
+/// Half the number of cells of a window, in the finer and the rougher reconstruction, and beside a bend.
+const REACH: [usize; 3] = [4, 3, 2];
+
+/// The reconstruction beside a bend: at an end of their windows polynomials of higher degree make more of what the
+/// density is off by in the nearest cells.
+pub(super) const BESIDE_BEND: usize = 2;
 
 /// Fewest cells that a window may have.
 const FEWEST: usize = 4;

@@ -115,7 +115,6 @@ impl GeneratorSession {
             space,
             weights: &weights,
             others: others.as_deref().map_or(Others::None, Others::Second),
-            planes: &planes,
             closed: &self.source.closed_ends,
             escape_rate: info.escape_rate,
         };

@@ -315,7 +315,6 @@ mod tests {
             space,
             weights: &weights,
             others: Others::Second(&weights),
-            planes: &[],
             closed: &[[false; 2]; 2],
             escape_rate: 0.0,
         };

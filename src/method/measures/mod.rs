@@ -64,8 +64,6 @@ pub(super) struct Cells<'a> {
     /// Masses, or a generator's unknowns, whose sums are more accurate; Σ = 1.
     pub(super) weights: &'a [f64],
     pub(super) others: Others<'a>,
-    /// Axes with coordinates of planes on which the derivative of the density jumps.
-    pub(super) planes: &'a [(usize, f64)],
     /// Ends that nothing passes, by axes.
     pub(super) closed: &'a [[bool; 2]],
     /// Mass that leaves per unit time.

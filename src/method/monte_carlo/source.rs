@@ -241,7 +241,6 @@ impl MonteCarloSource {
             space,
             weights: &found.mass,
             others: Others::Replicates(replicates),
-            planes: &[],
             closed: &self.closed_ends,
             escape_rate: found.runaway_rate,
         };

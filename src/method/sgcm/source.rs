@@ -265,7 +265,6 @@ impl SgcmSource {
                 space,
                 weights: &steady.mass,
                 others: Others::Replicates(&replicates),
-                planes: &[],
                 closed: &self.steps.closed_ends,
                 escape_rate,
             }),

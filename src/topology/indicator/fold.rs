@@ -14,7 +14,7 @@ use std::cmp::Ordering;
 use super::kind::Traits;
 use super::{Indicator, IndicatorKind};
 use crate::density::EstimatedDensity;
-use crate::topology::field::{Curvature, Field, Jet, Stencil};
+use crate::topology::field::{BESIDE_BEND, Curvature, Field, Jet, Stencil};
 
 /// Most steps of Newton's method.
 const MOST_STEPS: usize = 20;
@@ -138,7 +138,7 @@ impl AtBend {
         let stencils = |level: usize| -> Option<Vec<Stencil>> {
             beside.iter().map(|at| field.stencil(at, level)).collect()
         };
-        let (fine, rough) = (stencils(0)?, stencils(1)?);
+        let (fine, rough) = (stencils(BESIDE_BEND)?, stencils(1)?);
         let across = self.across;
         let slope = |stencils: &[Stencil], values: &[f64]| {
             let jets = stencils.iter().map(|one| one.jet(values));
@@ -179,8 +179,9 @@ fn at_bend(estimated: &EstimatedDensity, field: &Field<'_>, near: &[f64]) -> Opt
                 break;
             }
         }
-        let [below, above] = AtBend::beside(&place, across, field.unit(across))
-            .map(|at| field.jet(&at).map(|jet| jet.second[2 * across] > 0.0));
+        let [below, above] = AtBend::beside(&place, across, field.unit(across)).map(|at| {
+            Some(field.stencil(&at, BESIDE_BEND)?.jet(field.values()).second[2 * across] > 0.0)
+        });
         let rises = below?;
         (above? != rises).then_some(AtBend {
             place,
