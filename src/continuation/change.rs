@@ -141,10 +141,10 @@ fn between(
     found
 }
 
-/// What follows an event. A critical point that stays, on a line of symmetry, goes before a fold, but where a force bends
-/// between it and its saddle: curvatures jump there, and what passes zero is the slope. Where counts follow
-/// from the equations, a change of sign at which the count stays is another event's: a peak that was born on a flank
-/// before it reaches a kink. Then its inflection is followed in place of the kink.
+/// What follows an event. A critical point that stays, on a line of symmetry, goes before a fold, but where a force
+/// bends between it and its saddle: curvatures jump there, and what passes zero is the slope. Where counts follow from
+/// the equations, a change of sign at which the count stays is another event's: a peak that was born on a flank before
+/// it reaches a kink. Then its inflection is followed in place of the kink.
 fn decisive(
     points: &[&Point],
     detector: &dyn Detector,

@@ -238,8 +238,8 @@ fn a_hysteretic_oscillator_keeps_its_mass_within_the_walls() {
 /// y' = -κ y + f(x) + √s ξ with a force that bends at c: the density is exp(-2κ/s (y²/2 + V(x))).
 const BENT: (f64, f64, f64) = (0.8, 0.6, 0.177);
 
-/// By how much the slope of log p at the bend is off, on the line of cells above y = 0: the mean of the slopes at the bend
-/// of the parabolas through the errors of three cells on either side.
+/// By how much the slope of log p at the bend is off, on the line of cells above y = 0: the mean of the slopes there of
+/// the parabolas through the errors of three cells on either side.
 fn slope_error_at_bend(count: usize) -> f64 {
     let (kappa, s, c) = BENT;
     let model = TypedModel::new("bent", "A force that bends", ["x", "y"])

@@ -63,7 +63,7 @@ impl AxisGeometry {
         let count = axis.count();
         let damping = damping(space);
         let noisy = system.is_noisy(index);
-        // Where no noise acts, a derivative of the density jumps with the drift or its slope: stencils stay on one side.
+        // Where no noise acts, a derivative of the density jumps with the drift or its slope.
         let breaks = match noisy || axis.is_modes() {
             true => Vec::new(),
             false => breaks(system, index, space),
