@@ -138,14 +138,15 @@ pub(super) fn surface_faces(system: &dyn System, index: usize, axis: &Axis) -> V
         .collect()
 }
 
-/// Inner faces of an axis without noise on which the drift jumps or bends most, each with as many cells as a stencil
-/// takes on either side before the next one or an end. The others are left to stencils across them.
+/// Inner faces of an axis without noise on which what drives other axes jumps or bends most, each with as many cells as
+/// a stencil takes on either side before the next one or an end. The others are left to stencils across them, and so
+/// are those at which the drift along the axis itself is not smooth: what flows through them may stop there.
 fn breaks(system: &dyn System, index: usize, space: &CellSpace) -> Vec<usize> {
     let axis = &space.axes()[index];
     let mut found: Vec<(f64, usize)> = surface_faces(system, index, axis)
         .into_iter()
         .filter(|face| (REACH..=axis.count().saturating_sub(REACH)).contains(face))
-        .map(|face| (sharpness(system, (index, face), space), face))
+        .filter_map(|face| Some((sharpness(system, (index, face), space)?, face)))
         .collect();
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut kept: Vec<usize> = Vec::new();
@@ -158,12 +159,19 @@ fn breaks(system: &dyn System, index: usize, space: &CellSpace) -> Vec<usize> {
     kept
 }
 
-/// By how much the drift changes its slope at a face, summed over what it moves, at the middle of the other axes and at
-/// two places aside; where the drift jumps that is a large number.
-fn sharpness(system: &dyn System, (index, face): (usize, usize), space: &CellSpace) -> f64 {
+/// Distance from a face at which slopes on either side are taken, in widths of its cell, and the change of a drift over
+/// a cell that is a smaller share of it is smooth.
+const ASIDE: f64 = 1e-4;
+const SMOOTH: f64 = 1e-2;
+
+/// By how much the drift along other axes changes its slope at a face, in changes over a cell; a jump counts for more.
+/// At the middle of the other axes and at two places aside. `None` where all is smooth, and where the drift along the
+/// axis is not.
+fn sharpness(system: &dyn System, (index, face): (usize, usize), space: &CellSpace) -> Option<f64> {
     let axis = &space.axes()[index];
-    let step = 1e-4 * axis.width(face);
-    let places = [0.31, 0.5, 0.73].into_iter().map(|share| {
+    let step = ASIDE * axis.width(face);
+    let mut sharpest: Option<f64> = None;
+    for share in [0.31, 0.5, 0.73] {
         let ends = space.axes().iter();
         let mut state: Vec<f64> = ends
             .map(|one| one.from() + share * (one.to() - one.from()))
@@ -172,15 +180,20 @@ fn sharpness(system: &dyn System, (index, face): (usize, usize), space: &CellSpa
             state[index] = axis.edges()[face] + steps * step;
             system.drift_at(0.0, &state)
         });
-        let components = 0..below.len();
-        let changes = components.map(|k| {
-            let slopes = [far_above[k] - above[k], below[k] - far_below[k]];
-            let jump = 2.0 * (above[k] - below[k]) - (far_above[k] - far_below[k]);
-            ((slopes[0] - slopes[1]).abs() + jump.abs()) / step
-        });
-        changes.sum::<f64>()
-    });
-    places.fold(0.0, f64::max)
+        for component in 0..below.len() {
+            let of = |values: &[f64]| values[component];
+            let slopes = [of(&below) - of(&far_below), of(&far_above) - of(&above)];
+            let jump = 2.0 * (of(&above) - of(&below)) - (of(&far_above) - of(&far_below));
+            let change = ((slopes[1] - slopes[0]).abs() + jump.abs()) / ASIDE;
+            let size = of(&below).abs() + (slopes[0].abs() + slopes[1].abs()) / ASIDE;
+            match (change > SMOOTH * size, component == index) {
+                (true, true) => return None,
+                (true, false) => sharpest = Some(sharpest.map_or(change, |one| one.max(change))),
+                (false, _) => {}
+            }
+        }
+    }
+    sharpest
 }
 
 /// Share of the upwind scheme's dissipation that the cells of a space need.

@@ -90,11 +90,14 @@ impl Base {
                 });
             }
         }
-        Ok(Bound {
-            key: key(&settings),
-            sweep: fixed(settings)?,
-            value,
-        })
+        let key = key(&settings);
+        let mut sweep = fixed(settings)?;
+        if !preview && !self.walled.contains(&true) {
+            // A surface that moves with the parameter takes no faces along: what is shown stays on its cells.
+            let cells = self.sweep.problem.space().clone();
+            sweep.problem = (sweep.problem.on(cells)).map_err(|error| error.to_string())?;
+        }
+        Ok(Bound { key, sweep, value })
     }
 
     /// The sweep between two values.
