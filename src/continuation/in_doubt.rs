@@ -51,7 +51,14 @@ impl<'p> InDoubt<'p> {
             .iter()
             .filter(|row| row.observable == of.1 && is_of_cells(row))
             .filter(|row| !self.lacks_modes(row.hull()));
-        let unsure = self.unsure.iter().chain(&self.wide);
+        // Beside a row that is located its own pair is what is not sure.
+        let is_told = |value: f64| {
+            let told = |row: &&Located| row.observable == of.1 && row.doubts.is_empty();
+            let mut told = rows.iter().filter(told).map(Located::hull);
+            told.any(|[lower, upper]| (lower..=upper).contains(&value))
+        };
+        let unsure = self.unsure.iter().filter(|one| !is_told(one.1));
+        let unsure = unsure.chain(&self.wide);
         let unsure = unsure.filter(|one| one.0 == of.0 && times <= MOST_UNCOUNTED);
         let unsure = unsure.filter(|one| !self.lacks_modes([one.1; 2]));
         let in_doubt = (in_doubt.map(Located::hull)).chain(unsure.map(|one| [one.1; 2]));

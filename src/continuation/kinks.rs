@@ -62,6 +62,16 @@ impl Kinks {
         }
     }
 
+    /// Whether what a second scheme differs by on the coarser cells is claimed beside a distance to cells that are
+    /// refined for so many times.
+    pub(super) fn are_blurred(self, times: u8) -> bool {
+        match self {
+            Self::None => false,
+            Self::BendOnFace => times < 2,
+            Self::Cut => true,
+        }
+    }
+
     /// By how much a distance to finer cells may fall when these are refined once more: values that agree better than
     /// that do so by chance.
     pub(super) fn fall(self, check: CellCheck) -> f64 {
@@ -91,6 +101,7 @@ mod tests {
         ] {
             assert_eq!(kinks.share(1, claimed, check), first, "{kinks:?}");
             assert_eq!(kinks.share(2, claimed, check), second, "{kinks:?}");
+            assert_eq!(kinks.are_blurred(2), kinks == Kinks::Cut);
             assert_eq!(kinks.fall(check), 1.5_f64.powi(fall), "{kinks:?}");
         }
     }

@@ -250,7 +250,8 @@ fn on_finer_cells(
                 let by_schemes = if cells.is_wide { finer.error } else { 0.0 };
                 let claimed = kinks.share(times, share, cells.check) * distance;
                 let grid = claimed.max(expected).max(by_schemes);
-                zero.error.grid = at_least(grid, (own, least), kinks, density, options);
+                let is_blurred = kinks.are_blurred(times);
+                zero.error.grid = at_least(grid, (own, least), is_blurred, density, options);
                 zero.value = finer.value;
                 own = finer.error;
                 expected = kinks.share(2, share, cells.check) * distance / kinks.fall(cells.check);
@@ -332,11 +333,11 @@ fn against(
 fn at_least(
     distance: f64,
     (before, both): (f64, f64),
-    kinks: Kinks,
+    is_blurred: bool,
     density: &EstimatedDensity,
     options: &Goal,
 ) -> f64 {
-    let is_blurred = kinks != Kinks::None && density.density.axes.len() > 1;
+    let is_blurred = is_blurred && density.density.axes.len() > 1;
     if is_blurred && density.is_by_quadrature() {
         // No scheme takes part in closed forms that another source gives on cells. What the generator finds by
         // quadrature does not come here: its indicators follow from a profile, which no cells change.

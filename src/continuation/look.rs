@@ -57,9 +57,11 @@ impl CloserLook {
         let (told, tells) = (Told::by(&before), Told::by(&self.rows));
         let is_more = match tells {
             Told::Located => told < tells || before.len() < self.rows.len(),
-            // Of two values that are both less certain than wanted, that of finer cells is the better one.
+            // Of two values that are both less certain than wanted, that of finer cells is the better one, unless it
+            // confirms the other with a larger error, of fewer grids.
             Told::Values => {
-                told < tells || is_first || (told == tells && before.len() == self.rows.len())
+                let is_alike = told == tells && before.len() == self.rows.len();
+                told < tells || is_first || (is_alike && !self.confirms_widely(&before))
             }
             Told::Bands => false,
         };
@@ -72,6 +74,16 @@ impl CloserLook {
         is_more
     }
 
+    /// Whether as many rows as others have their values within theirs, and leave more in doubt.
+    fn confirms_widely(&self, before: &[Located]) -> bool {
+        let mut pairs = self.rows.iter().zip(before);
+        let is_within = |(own, other): (&Located, &Located)| {
+            let [lower, upper] = other.hull();
+            (lower..=upper).contains(&own.value)
+        };
+        pairs.all(is_within) && in_doubt(&self.rows) > in_doubt(before)
+    }
+
     /// Whether rows that two grids do not agree on by chance, and that neither finer cells nor other rows contradict,
     /// leave a shorter stretch in doubt than others, with no fewer located.
     fn is_narrower(&self, before: &[Located]) -> bool {
@@ -81,17 +93,18 @@ impl CloserLook {
                 || row.doubts.contains(&Doubt::CoarseCells(row.error, None))
         };
         let located = |rows: &[Located]| rows.iter().filter(|row| is_located(row)).count();
-        let in_doubt = |rows: &[Located]| -> f64 {
-            let rows = rows.iter().filter(|row| !is_located(row));
-            rows.map(Located::hull)
-                .map(|[lower, upper]| upper - lower)
-                .sum()
-        };
         let is_new = before.is_empty() && !self.rows.is_empty();
         !self.rows.iter().any(is_contradicted)
             && located(before) <= located(&self.rows)
             && (is_new || in_doubt(&self.rows) < in_doubt(before))
     }
+}
+
+/// The length of what rows that are not located leave in doubt.
+fn in_doubt(rows: &[Located]) -> f64 {
+    let rows = rows.iter().filter(|row| !is_located(row));
+    let lengths = rows.map(Located::hull).map(|[lower, upper]| upper - lower);
+    lengths.sum()
 }
 
 fn is_located(row: &Located) -> bool {

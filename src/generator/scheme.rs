@@ -89,7 +89,7 @@ impl AdvectiveScheme {
     /// missing in the cells on either side, whose rates along other axes make it good (`LineSampler`). The values at
     /// the face are the same from both sides, and are what dissipation holds together.
     pub(super) fn at_break(self) -> (Window, Window) {
-        let flux = [2.0, -7.0, 11.0, 0.0, 0.0, 0.0].map(|weight| weight / 6.0);
+        let flux = [20.0, -106.0, 362.0, 0.0, 0.0, 0.0].map(|weight| weight / 276.0);
         let value = [3.0, -10.0, 15.0, 0.0, 0.0, 0.0].map(|weight| weight / 8.0);
         self.between(half_sum(flux, mirrored(flux)), value, mirrored(value))
     }

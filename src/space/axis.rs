@@ -8,6 +8,7 @@
 //! An *axis of modes* carries a series in place of cells (`series.rs`, `hermite.rs`): its nodes are those of a Gauss
 //! rule, and its "cells" hold the weights, so that sums over cells are the rule.
 
+use self::even::{even, is_bend};
 use super::SpaceError;
 use super::grading::{BULK_SHARE, Grading, Piece, cubic_term, grading_terms};
 use super::series::Series;
@@ -140,7 +141,7 @@ impl Axis {
             let cells = (cuts[index], cuts[index + 1] - cuts[index]);
             Piece::new((ends[index], ends[index + 1]), cells, bulk, terms)
         };
-        Ok(Self::from_pieces((0..pieces).map(piece).collect()))
+        Ok(Self::from_pieces(even((0..pieces).map(piece).collect())))
     }
 
     fn check(from: f64, to: f64, count: usize) -> Result<(), SpaceError> {
@@ -197,7 +198,7 @@ impl Axis {
         });
         Self {
             closes: self.closes,
-            ..Self::from_pieces(pieces.collect())
+            ..Self::from_pieces(even(pieces.collect()))
         }
     }
 
@@ -268,12 +269,14 @@ impl Axis {
         self.pieces.iter().find(holds)
     }
 
-    /// Whether all cells have the same width.
+    /// Whether all cells have the same width, but for what faces on given places ask for.
     pub(crate) fn is_uniform(&self) -> bool {
-        !self.is_modes() && self.pieces.iter().all(|piece| piece.terms.is_empty())
+        let is_even = |piece: &Piece| piece.terms.iter().all(|term| is_bend(term, self));
+        !self.is_modes() && self.pieces.iter().all(is_even)
     }
 }
 
+mod even;
 mod faces;
 mod modes;
 mod place;

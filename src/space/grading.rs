@@ -78,8 +78,12 @@ impl Piece {
 
     /// dx/du, the width of a cell that would lie evenly about `x`.
     pub(super) fn stretch(&self, x: f64) -> f64 {
-        let graded: f64 = self
-            .terms
+        1.0 / (self.scale * Self::density(self.bulk, &self.terms, x))
+    }
+
+    /// The derivative of the cell coordinate before it is scaled.
+    pub(super) fn density(bulk: f64, terms: &[(f64, f64, f64)], x: f64) -> f64 {
+        let graded: f64 = terms
             .iter()
             .map(|&(amplitude, centre, width)| {
                 if width == 0.0 {
@@ -88,7 +92,7 @@ impl Piece {
                 amplitude / (x - centre).hypot(width)
             })
             .sum();
-        1.0 / (self.scale * (self.bulk + graded))
+        bulk + graded
     }
 
     /// The x with the given cell coordinate, by bisection (used once an edge).

@@ -146,7 +146,10 @@ impl Detector for PersistenceDetector {
         }
         match density.density.axes.len() {
             1 => shoulders(density),
-            _ => [flanks_from_centre(density), flanks_of_crests(density)].concat(),
+            _ => {
+                let of_crests = flanks_of_crests(density, self.options.floor);
+                [flanks_from_centre(density), of_crests].concat()
+            }
         }
     }
 

@@ -254,12 +254,20 @@ pub(crate) fn holding(densities: &[&Density], axis: usize, share: f64) -> Option
 pub(crate) fn cell_resolution(axes: &[&Axis], window: (f64, f64), length: f64) -> usize {
     let most = (length * PNG_SCALE).round().clamp(1.0, MOST_PIXELS) as usize;
     match axes {
-        [first, rest @ ..] if first.is_uniform() && rest.iter().all(|axis| axis == first) => {
+        [first, rest @ ..] if are_even(first) && rest.iter().all(|axis| axis == first) => {
             let cells = (window.1 - window.0) / first.width(0);
             (cells.round() as usize).clamp(1, most)
         }
         _ => most,
     }
+}
+
+/// Difference of the widths of cells, relative, that no pixel shows.
+const ALIKE: f64 = 1e-4;
+
+fn are_even(axis: &Axis) -> bool {
+    let mut cells = 0..axis.count();
+    axis.is_uniform() && cells.all(|cell| (axis.width(cell) / axis.width(0) - 1.0).abs() < ALIKE)
 }
 
 #[cfg(test)]

@@ -103,7 +103,8 @@ impl GeneratorSource {
         let systems = self.problem.family().along()?;
         let finer = finer_axes(space).into_iter().enumerate();
         // What is not smooth inside a cell is not seen there, however small the cell.
-        let finer = finer.map(|(axis, cells)| cells.with_faces_on(&fixed_surfaces(&systems, axis)));
+        let finer =
+            finer.map(|(axis, cells)| cells.with_faces_on(&fixed_surfaces(&systems, axis, space)));
         let finer = CellSpace::new(finer.collect())?;
         let problem = self.problem.wanting(want).on(finer)?;
         let problem = problem.with_finer_bins(finer_factor(space));

@@ -57,16 +57,37 @@ pub(super) fn all_kinked_surfaces(
     surfaces
 }
 
-/// The places of the switching surfaces across an axis that stay where they are all along the sweep.
-pub(crate) fn fixed_surfaces(systems: &[Arc<dyn System>], axis: usize) -> Vec<f64> {
+/// The places of the switching surfaces across an axis that stay where they are all along the sweep, and at which
+/// faces serve. Across an axis without noise a curvature of the drift that jumps, as that of x |x|, moves the third
+/// derivative of a density alone: faces would spoil the cells for what is sharper.
+pub(crate) fn fixed_surfaces(
+    systems: &[Arc<dyn System>],
+    axis: usize,
+    space: &CellSpace,
+) -> Vec<f64> {
     let Some((first, others)) = systems.split_first() else {
         return Vec::new();
     };
-    let stays = |at: &f64| {
+    let surfaces = first.facts().switching_surfaces.iter();
+    let stays = |surface: &&SwitchingSurface| {
         let mut others = others.iter();
-        others.all(|system| system.facts().surfaces_on(axis).any(|one| one == *at))
+        others.all(|system| {
+            let mut surfaces = system.facts().surfaces_on(axis);
+            surfaces.any(|one| one == surface.at)
+        })
     };
-    first.facts().surfaces_on(axis).filter(stays).collect()
+    let is_sharp = |surface: &&SwitchingSurface| {
+        let breaks = |system: &Arc<dyn System>| break_at(system.as_ref(), space, **surface);
+        let is_curvature = |one: Break| one == Break::Curvature;
+        undriven::is_driven(first.as_ref(), **surface)
+            || !systems.iter().map(breaks).all(is_curvature)
+    };
+    let on_axis = surfaces.filter(|surface| surface.axis == axis);
+    on_axis
+        .filter(stays)
+        .filter(is_sharp)
+        .map(|surface| surface.at)
+        .collect()
 }
 
 /// Whether the lower and upper end of each axis is a wall that the system cannot pass, all along the sweep, or belongs
@@ -125,8 +146,8 @@ pub(super) fn structure(
                 break_at(system, space, *one),
                 undriven::is_driven(system, *one),
             ) {
-                (Break::Bend, _) | (Break::Jump, false) => Vec::new(),
-                (Break::None, _) | (Break::Jump, true) => return None,
+                (Break::Bend, _) | (Break::Curvature, true) | (Break::Jump, false) => Vec::new(),
+                (Break::None, _) | (Break::Curvature, false) | (Break::Jump, true) => return None,
             };
             let at = one.at;
             Some(Kink { axis, at, jump })

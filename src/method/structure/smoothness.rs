@@ -8,7 +8,9 @@ use crate::system::{Noise, SwitchingSurface, System};
 pub(super) enum Break {
     /// As smooth as elsewhere.
     None,
-    /// Drift or noise across it bends, or its curvature jumps.
+    /// The curvature of drift or noise jumps.
+    Curvature,
+    /// Drift or noise bends.
     Bend,
     /// The drift across it jumps: the jump law tells of it.
     Jump,
@@ -78,10 +80,10 @@ fn how_smooth(above: [f64; 4], below: [f64; 4]) -> Break {
     let curvature = |f: [f64; 4]| (f[0] - 2.0 * f[1] + f[2]) / (APART * APART);
     if (value(above) - value(below)).abs() > ROUNDING * size {
         Break::Jump
-    } else if (slope(above) + slope(below)).abs() > ROUNDING * size
-        || (curvature(above) - curvature(below)).abs() > SMOOTH * size
-    {
+    } else if (slope(above) + slope(below)).abs() > ROUNDING * size {
         Break::Bend
+    } else if (curvature(above) - curvature(below)).abs() > SMOOTH * size {
+        Break::Curvature
     } else {
         Break::None
     }

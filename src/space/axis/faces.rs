@@ -1,6 +1,6 @@
 //! Faces laid on places inside of cells.
 
-use super::Axis;
+use super::{Axis, even::even};
 use crate::space::grading::Piece;
 
 impl Axis {
@@ -38,7 +38,7 @@ impl Axis {
         }
         Self {
             closes: self.closes,
-            ..Self::from_pieces(pieces)
+            ..Self::from_pieces(even(pieces))
         }
     }
 }

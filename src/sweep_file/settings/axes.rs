@@ -264,9 +264,15 @@ pub(in crate::sweep_file) fn cell_space(
             let diagnostic = Diagnostic::new(title).remedy("give numbers, or prepare the sweep");
             return Err(Box::new(at_cells(document, diagnostic)));
         };
-        built.push(axis.with_faces_on(&fixed_surfaces(&systems, index)));
+        built.push(axis);
     }
-    CellSpace::new(built).map_err(|error| {
+    let with_faces = |space: CellSpace| {
+        let axes = space.axes().iter().enumerate();
+        let axes =
+            axes.map(|(index, axis)| axis.with_faces_on(&fixed_surfaces(&systems, index, &space)));
+        CellSpace::new(axes.collect())
+    };
+    CellSpace::new(built).and_then(with_faces).map_err(|error| {
         let diagnostic = Diagnostic::new(error.to_string());
         Box::new(at_cells(document, diagnostic))
     })

@@ -32,25 +32,32 @@ struct Top {
     error: f64,
     /// -(log p)'' across it.
     curvature: f64,
+    /// Of the density, over its largest value.
+    height: f64,
 }
 
 /// The extrema of the slope along crests, with the axis that each runs along. They say where to look, and are read on
 /// the centres of cells. None where a derivative of the density jumps, of marginals, of sampled densities, and where
-/// there is a centre of symmetry: indicators are read there, and the crest of a ring about it has no slope.
-pub(crate) fn flanks_of_crests(estimated: &EstimatedDensity) -> Vec<Flank> {
+/// there is a centre of symmetry: indicators are read there, and the crest of a ring about it has no slope. Below a
+/// floor, a share of the maximum, those alone of which schemes are sure: what else may be there is too low to count.
+pub(crate) fn flanks_of_crests(estimated: &EstimatedDensity, floor: f64) -> Vec<Flank> {
     let is_smooth = estimated.structure.kinks.iter().all(|kink| kink.is_bend());
     let usable = is_smooth && estimated.structure.centre.is_none() && !estimated.is_noisy();
     let usable = usable && estimated.density.axes.len() == 2;
     match Field::new(estimated).filter(|_| usable) {
         Some(field) => [0, 1]
             .into_iter()
-            .flat_map(|along| flanks(estimated, &field, along))
+            .flat_map(|along| flanks(estimated, &field, (along, floor)))
             .collect(),
         None => Vec::new(),
     }
 }
 
-fn flanks(estimated: &EstimatedDensity, field: &Field<'_>, along: usize) -> Vec<Flank> {
+fn flanks(
+    estimated: &EstimatedDensity,
+    field: &Field<'_>,
+    (along, floor): (usize, f64),
+) -> Vec<Flank> {
     let (axis, across) = (&field.axes()[along], &field.axes()[1 - along]);
     let tops: Vec<Vec<Top>> = (0..axis.count())
         .map(|line| tops(estimated, field, along, line))
@@ -75,7 +82,7 @@ fn flanks(estimated: &EstimatedDensity, field: &Field<'_>, along: usize) -> Vec<
             let is_turn = (up >= 0.0 && down > 0.0) || (up <= 0.0 && down < 0.0);
             let errors = left.error + here.error + right.error;
             let is_sure = (up + down).abs() > CLEAR * errors && here.slope.abs() > here.error;
-            let may_be_zero = here.slope.abs() <= CLEAR * here.error;
+            let may_be_zero = here.slope.abs() <= CLEAR * here.error && here.height > floor;
             let is_bent = bend.abs() > LEAST_BEND * here.curvature.powf(1.5);
             if is_turn && (is_sure || may_be_zero) && is_bent {
                 let rising = bend > 0.0;
@@ -127,6 +134,7 @@ fn tops(estimated: &EstimatedDensity, field: &Field<'_>, along: usize, line: usi
             slope: slope(&jet),
             error: (slope(&second) - slope(&jet)).abs(),
             curvature,
+            height: jet.value / estimated.density.maximum(),
         })
     };
     (1..across.count().saturating_sub(1))
@@ -168,7 +176,7 @@ mod tests {
                     },
                 )
             };
-            flanks_of_crests(&estimated)
+            flanks_of_crests(&estimated, 1e-3)
         };
         for theta in [-2.0, -0.5, 0.5, 2.0].map(|share| share * fold) {
             for rising in [false, true] {

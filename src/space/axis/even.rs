@@ -1,0 +1,143 @@
+//! Widths of cells that do not jump where stretches with whole numbers of cells meet.
+//!
+//! Each stretch between faces on given places has a whole number of cells, which a common law of widths does not give
+//! by itself. Stretched one by one, widths jump where they meet, and what is differenced there is of order one. The law
+//! is bent a little over the whole range instead, so that it gives whole numbers everywhere.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::Axis;
+use crate::space::grading::Piece;
+
+/// Most by which the law may be bent anywhere, as a factor of the width of cells.
+const MOST: f64 = 1.3;
+
+/// Width of a bend at least, as a share of the range: gradings are narrower.
+const WIDE: f64 = 0.2;
+
+/// Places between ends at which that is looked at, beside the ends of all stretches.
+const LOOKED_AT: usize = 64;
+
+/// Difference of widths where stretches meet, relative, below which they are even.
+const EVEN: f64 = 1e-9;
+
+/// The same stretches by a law that gives each its number of cells; as they are where they follow from no common law,
+/// are even, or where the law would have to be bent too much.
+pub(super) fn even(pieces: Vec<Piece>) -> Vec<Piece> {
+    bent(&pieces).unwrap_or(pieces)
+}
+
+/// Whether a term of a law is a bend of it, and no grading.
+pub(super) fn is_bend(term: &(f64, f64, f64), axis: &Axis) -> bool {
+    term.2 >= WIDE * (axis.to() - axis.from())
+}
+
+fn bent(pieces: &[Piece]) -> Option<Vec<Piece>> {
+    let [first, rest @ ..] = pieces else {
+        return None;
+    };
+    let is_common = |one: &Piece| one.bulk == first.bulk && one.terms == first.terms;
+    let is_even = |one: &Piece| (one.scale / first.scale - 1.0).abs() <= EVEN;
+    if !rest.iter().all(is_common) || rest.iter().all(is_even) {
+        return None;
+    }
+    let (from, to) = (first.from, pieces.last()?.to);
+    let width = to - from;
+    // A bend about the middle of each stretch but the longest, as wide as the stretch.
+    let length = |piece: &Piece| piece.to - piece.from;
+    let longest = pieces.iter().map(length).fold(0.0, f64::max);
+    let longest = pieces.iter().position(|piece| length(piece) == longest)?;
+    let others = pieces.iter().enumerate().filter(|one| one.0 != longest);
+    let bend = |piece: &Piece| (1.0, 0.5 * (piece.from + piece.to), length(piece));
+    let bends: Vec<(f64, f64, f64)> = others.map(|(_, piece)| bend(piece)).collect();
+    let law = |x: f64| Piece::raw(first.bulk, &first.terms, x);
+    let rows = pieces.len();
+    let held = DMatrix::from_fn(rows, rows, |piece, unknown| {
+        let of = |x: f64| match unknown.checked_sub(1) {
+            None => law(x),
+            Some(bend) => Piece::raw(0.0, &bends[bend..=bend], x),
+        };
+        of(pieces[piece].to) - of(pieces[piece].from)
+    });
+    let wanted = DVector::from_fn(rows, |piece, _| pieces[piece].cells as f64);
+    let found = held.lu().solve(&wanted)?;
+    let scale = found[0];
+    let mut terms: Vec<(f64, f64, f64)> = Vec::new();
+    let own = first
+        .terms
+        .iter()
+        .map(|&(size, at, wide)| (scale * size, at, wide));
+    let bends = bends.iter().zip(found.iter().skip(1));
+    let bends = bends.map(|(&(_, at, wide), &size)| (size, at, wide));
+    for term in own.chain(bends) {
+        match terms
+            .iter_mut()
+            .find(|one| one.1 == term.1 && one.2 == term.2)
+        {
+            Some(same) => same.0 += term.0,
+            None => terms.push(term),
+        }
+    }
+    let bulk = scale * first.bulk;
+    let made = pieces.iter().map(|one| {
+        Piece::new(
+            (one.from, one.to),
+            (one.first_cell, one.cells),
+            bulk,
+            &terms,
+        )
+    });
+    let made: Vec<Piece> = made.collect();
+    let mut places: Vec<f64> = pieces.iter().map(|one| one.from).collect();
+    places.extend((0..=LOOKED_AT).map(|k| from + width * k as f64 / LOOKED_AT as f64));
+    let total: f64 = made.iter().map(|one| one.cells as f64).sum();
+    let even_law = total / (law(to) - law(from));
+    let is_gentle = |&x: &f64| {
+        let density = |bulk: f64, terms: &[(f64, f64, f64)]| Piece::density(bulk, terms, x);
+        let share = density(bulk, &terms) / (even_law * density(first.bulk, &first.terms));
+        (MOST.recip()..=MOST).contains(&share) || share.is_nan()
+    };
+    places.iter().all(is_gentle).then_some(made)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Axis;
+    use crate::space::Grading;
+
+    /// The largest change of width from cell to cell, relative.
+    fn largest_change(axis: &Axis) -> f64 {
+        let pairs = (1..axis.count()).map(|cell| (axis.width(cell) / axis.width(cell - 1)).ln());
+        pairs.map(f64::abs).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn widths_do_not_jump_at_places_that_faces_are_laid_on() {
+        let axis = Axis::uniform(-5.09, 5.07, 45).unwrap();
+        for places in [vec![0.651], vec![-2.3, 2.1], vec![-3.1, 0.2, 2.4]] {
+            let laid = axis.with_faces_on(&places);
+            for (cells, count) in [(laid.clone(), 45), (laid.refined(1.5), 67)] {
+                assert!(cells.count().abs_diff(count) <= 2, "{}", cells.count());
+                assert!(places.iter().all(|&at| !cells.is_inside_cell(at)));
+                // Cells of one width in each stretch would jump by so much.
+                let means = cells.pieces.iter();
+                let means = means.map(|piece| (piece.to - piece.from) / piece.cells as f64);
+                let means: Vec<f64> = means.collect();
+                let jumps = means.windows(2).map(|pair| (pair[1] / pair[0]).ln().abs());
+                let (change, jump) = (largest_change(&cells), jumps.fold(0.0, f64::max));
+                assert!(change < 0.5 * jump, "{places:?}: {change} of {jump}");
+            }
+        }
+    }
+
+    #[test]
+    fn stretches_that_are_even_stay_as_they_are() {
+        let grading = Grading {
+            at: vec![0.0],
+            smallest: 0.05,
+        };
+        let axis = Axis::graded(-2.0, 2.0, 40, &grading).unwrap();
+        let parts: Vec<usize> = axis.pieces.iter().map(|piece| piece.terms.len()).collect();
+        assert_eq!(parts, [1, 1]);
+    }
+}
