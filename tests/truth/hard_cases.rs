@@ -96,6 +96,10 @@ const CASES: &[Case] = &[
         &[("y", 0.839_64), ("xy", 2.392_495)], Partly(1, "a wider range of y")),
     case("epidemic", "", "an epidemic, whose peak reaches the end at which the noise dies",
         &[("I", 0.022_360_679_775)], Located),
+    // c³ + 0.3 c - 0.287 c |c| with the corner c = 0.177, at which the slope on one side is level.
+    case("bent_force", "", "a peak that vanishes at a corner of the force, 80 × 60 cells, to 5e-3 of the range",
+        &[("xy", 0.049_653_810)], Located),
+    case("bent_force", "locate.relative_tolerance=1e-3", "the same, to 1e-3 of it", &[("xy", 0.049_653_810)], Located),
     case("dimentberg", "", "Dimentberg's oscillator, ranges found",
         &[("x", -0.453_634_0), ("y", -0.453_634_0), ("xy", -0.125)], Located),
 ];
@@ -202,6 +206,11 @@ fn a_band_holds_what_is_read_beside_a_fixed_point() {
 #[test]
 fn cells_are_refined_until_values_are_as_certain_as_wanted() {
     assert_right(of(&["coupled", "dimentberg"]));
+}
+
+#[test]
+fn what_vanishes_at_a_corner_of_a_force_is_located() {
+    assert_right(of(&["bent_force"]).take(1));
 }
 
 #[test]
