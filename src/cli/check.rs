@@ -9,7 +9,7 @@ use crate::continuation::evenly_spaced;
 use crate::exponent::of_family;
 use crate::method::{
     Cost, GeneratorCost, MethodOptions, MonteCarloCost, SgcmCost, StepChoice,
-    cost_of_largest_exponent,
+    cost_of_largest_exponent, wants_face,
 };
 use crate::run::fixed_point_in_words;
 use crate::stationary::generator::RateError;
@@ -257,6 +257,8 @@ fn notes(spec: &Sweep) -> Vec<String> {
     notes
 }
 
+const SURFACE: &str = "the switching surface";
+
 /// Surfaces and centres of symmetry that lie inside a cell.
 fn misplaced_faces(spec: &Sweep) -> Vec<String> {
     let family = spec.problem.family();
@@ -265,8 +267,11 @@ fn misplaced_faces(spec: &Sweep) -> Vec<String> {
         return Vec::new();
     };
     let mut wanted: Vec<(usize, f64, &str)> = Vec::new();
-    for surface in &system.facts().switching_surfaces {
-        wanted.push((surface.axis, surface.at, "the switching surface"));
+    let systems = family.along().unwrap_or_default();
+    for &surface in &system.facts().switching_surfaces {
+        if wants_face(&systems, surface, spec.problem.space()) {
+            wanted.push((surface.axis, surface.at, SURFACE));
+        }
     }
     if let Some(symmetry) = &system.facts().symmetry {
         let axes = symmetry.reflected.iter().zip(&symmetry.centre).enumerate();
@@ -286,10 +291,18 @@ fn misplaced_faces(spec: &Sweep) -> Vec<String> {
         };
         if !axis.is_modes() && axis.is_inside_cell(at) {
             let (name, count) = (family.axis(index), axis.count());
-            notes.push(format!(
-                "{what} {name} = {at} lies inside a cell: give a range with {at} in its middle and an even \
-                 `cells.{name}.count` (now {count}), or grade the axis toward it",
-            ));
+            // Faces lie on surfaces that stay where they are.
+            let remedy = if what == SURFACE && !axis.is_closed() {
+                "faces do not follow it along the sweep, and what happens at it is told in a band; write the equations \
+                 in the distance from it, so that it stays"
+                    .to_owned()
+            } else {
+                format!(
+                    "give a range with {at} in its middle and an even `cells.{name}.count` (now {count}), or grade the \
+                     axis toward it"
+                )
+            };
+            notes.push(format!("{what} {name} = {at} lies inside a cell: {remedy}"));
         }
     }
     notes

@@ -62,7 +62,7 @@ pub(crate) use range::{PILOT_BOX, RangeError, automatic_ranges};
 pub(crate) use sgcm::SgcmCost;
 pub use sgcm::{Corrected, Correction, SgcmOptions, SgcmSource, solve_corrected};
 pub(crate) use sticking::check_sticking;
-pub(crate) use structure::fixed_surfaces;
+pub(crate) use structure::{fixed_surfaces, wants_face};
 pub use time_step::StepChoice;
 
 use crate::cancellation::Cancelled;

@@ -116,7 +116,7 @@ fn faces_off_the_switching_surface_and_long_sweeps_are_noted() {
          cells = { x = { from = -3, to = 3, count = 30 }, y = { from = -3, to = 3, count = 30 } }\n",
     );
     room.done("check belt.toml")
-        .says(&["the switching surface y = 0.1 lies inside a cell"]);
+        .says(&["the switching surface y = 0.1 lies inside a cell: faces do not follow it"]);
     let text = checked("coulomb_fc", "cells.x={from=-5.5,to=5.5,count=61}");
     assert_says(&text, &["the centre of symmetry x = 0 lies inside a cell"]);
 }

@@ -58,8 +58,7 @@ pub(super) fn all_kinked_surfaces(
 }
 
 /// The places of the switching surfaces across an axis that stay where they are all along the sweep, and at which
-/// faces serve. Across an axis without noise a curvature of the drift that jumps, as that of x |x|, moves the third
-/// derivative of a density alone: faces would spoil the cells for what is sharper.
+/// faces serve.
 pub(crate) fn fixed_surfaces(
     systems: &[Arc<dyn System>],
     axis: usize,
@@ -76,18 +75,27 @@ pub(crate) fn fixed_surfaces(
             surfaces.any(|one| one == surface.at)
         })
     };
-    let is_sharp = |surface: &&SwitchingSurface| {
-        let breaks = |system: &Arc<dyn System>| break_at(system.as_ref(), space, **surface);
-        let is_curvature = |one: Break| one == Break::Curvature;
-        undriven::is_driven(first.as_ref(), **surface)
-            || !systems.iter().map(breaks).all(is_curvature)
-    };
     let on_axis = surfaces.filter(|surface| surface.axis == axis);
     on_axis
         .filter(stays)
-        .filter(is_sharp)
+        .filter(|surface| wants_face(systems, **surface, space))
         .map(|surface| surface.at)
         .collect()
+}
+
+/// Whether a face serves at a switching surface. Across an axis without noise a curvature of the drift that jumps, as
+/// that of x |x|, moves the third derivative of a density alone: faces would spoil the cells for what is sharper.
+pub(crate) fn wants_face(
+    systems: &[Arc<dyn System>],
+    surface: SwitchingSurface,
+    space: &CellSpace,
+) -> bool {
+    let is_smoother = |system: &Arc<dyn System>| {
+        let system = system.as_ref();
+        !undriven::is_driven(system, surface)
+            && break_at(system, space, surface) == Break::Curvature
+    };
+    !systems.iter().all(is_smoother)
 }
 
 /// Whether the lower and upper end of each axis is a wall that the system cannot pass, all along the sweep, or belongs
