@@ -62,13 +62,14 @@ impl Kinks {
         }
     }
 
-    /// Whether what a second scheme differs by on the coarser cells is claimed beside a distance to cells that are
-    /// refined for so many times.
-    pub(super) fn are_blurred(self, times: u8) -> bool {
-        match self {
-            Self::None => false,
-            Self::BendOnFace => times < 2,
-            Self::Cut => true,
+    /// What is claimed at least beside a distance to cells that are refined for so many times, of what a second scheme
+    /// differs by on the coarser of them and on the finer ones: distances may be small by chance, and that is not. A
+    /// third grid tells beside a bend on faces that errors fall with it.
+    pub(super) fn by_schemes(self, times: u8, [coarser, finer]: [f64; 2]) -> f64 {
+        match (self, times) {
+            (Self::None, _) => 0.0,
+            (Self::BendOnFace, 2..) => finer,
+            _ => coarser,
         }
     }
 
@@ -101,7 +102,13 @@ mod tests {
         ] {
             assert_eq!(kinks.share(1, claimed, check), first, "{kinks:?}");
             assert_eq!(kinks.share(2, claimed, check), second, "{kinks:?}");
-            assert_eq!(kinks.are_blurred(2), kinks == Kinks::Cut);
+            let by_schemes = if kinks == Kinks::None { 0.0 } else { 3.0 };
+            assert_eq!(kinks.by_schemes(1, [3.0, 1.0]), by_schemes);
+            let is_told = kinks == Kinks::BendOnFace;
+            assert_eq!(
+                kinks.by_schemes(2, [3.0, 1.0]),
+                if is_told { 1.0 } else { by_schemes }
+            );
             assert_eq!(kinks.fall(check), 1.5_f64.powi(fall), "{kinks:?}");
         }
     }

@@ -250,8 +250,8 @@ fn on_finer_cells(
                 let by_schemes = if cells.is_wide { finer.error } else { 0.0 };
                 let claimed = kinks.share(times, share, cells.check) * distance;
                 let grid = claimed.max(expected).max(by_schemes);
-                let is_blurred = kinks.are_blurred(times);
-                zero.error.grid = at_least(grid, (own, least), is_blurred, density, options);
+                let blur = kinks.by_schemes(times, [own, finer.error]);
+                zero.error.grid = at_least(grid, (blur, least), kinks, density, options);
                 zero.value = finer.value;
                 own = finer.error;
                 expected = kinks.share(2, share, cells.check) * distance / kinks.fall(cells.check);
@@ -332,12 +332,12 @@ fn against(
 /// through cells is chance too.
 fn at_least(
     distance: f64,
-    (before, both): (f64, f64),
-    is_blurred: bool,
+    (blur, both): (f64, f64),
+    kinks: Kinks,
     density: &EstimatedDensity,
     options: &Goal,
 ) -> f64 {
-    let is_blurred = is_blurred && density.density.axes.len() > 1;
+    let is_blurred = kinks != Kinks::None && density.density.axes.len() > 1;
     if is_blurred && density.is_by_quadrature() {
         // No scheme takes part in closed forms that another source gives on cells. What the generator finds by
         // quadrature does not come here: its indicators follow from a profile, which no cells change.
@@ -346,7 +346,7 @@ fn at_least(
     let least = distance.max(LEAST_CLAIM * options.tolerance);
     match density.structure.is_spread {
         true => least.max(both),
-        false if is_blurred => least.max(before),
+        false if is_blurred => least.max(blur),
         false => least,
     }
 }
