@@ -84,7 +84,8 @@ impl AdvectiveScheme {
     }
 
     /// The same of a face on which the density has a break, with three cells of its own on either side: the mean of the
-    /// fluxes of both sides. These are not values at the face, but of a function whose averages over cells are the
+    /// fluxes of both sides, by the cubics through their nodes that share value and slope at the face. These are not
+    /// values at the face, but of a function whose averages over cells are the
     /// nodes' values, and jump by a twenty-fourth of h² times the jump of the second derivative there; half of that is
     /// missing in the cells on either side, whose rates along other axes make it good (`LineSampler`). The values at
     /// the face are the same from both sides, and are what dissipation holds together.
