@@ -290,6 +290,7 @@ fn integrators(system: &dyn System) -> Result<(), AnyError> {
             Integrator::StochasticHeun | Integrator::WeakHeun => {
                 run.transitions.time_step().powi(3) / 4.0
             }
+            Integrator::Splitting | Integrator::WeakSplitting => 0.0,
         };
         print!("| {} | {time_step:.4} | {taken:.1e} | ", integrator.name());
         match &run.steady {

@@ -3,11 +3,10 @@
 use multiversion::multiversion;
 
 use super::advances::Advances;
-use super::lookup::CellLookup;
 
 use crate::MAX_DIMENSION;
 use crate::cancellation::Cancelled;
-use crate::sampling::{NormalStream, Stepper, StreamKey, mix, unit};
+use crate::sampling::{CellLookup, NormalStream, Stepper, StreamKey, mix, unit};
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes};
 
@@ -172,10 +171,20 @@ impl Histogram {
         sink.saturating_sub(self.gone)
     }
 
-    /// Counts one look at every trajectory of a batch, at this part of the period.
-    pub(super) fn look(&mut self, lookup: &CellLookup, batch: &Batch, part: usize) {
+    /// Counts one look at every trajectory of a batch that `stepper` advances, at this part of the period.
+    pub(super) fn look(
+        &mut self,
+        (lookup, stepper): (&CellLookup, &Stepper<'_>),
+        batch: &Batch,
+        part: usize,
+    ) {
         let first = part * batch.states.len();
         let sums = &mut self.sums[first..first + batch.states.len()];
+        if stepper.splits() {
+            let mut seen = batch.states.clone();
+            stepper.leave(&mut seen);
+            return count(lookup, &seen, &mut self.counts, sums);
+        }
         count(lookup, &batch.states, &mut self.counts, sums);
     }
 

@@ -2,10 +2,9 @@
 
 use super::batch::{Limits, Purpose};
 use super::ergodic::{ErgodicRun, Starts, Worker, whole};
-use super::lookup::CellLookup;
 use super::{Estimate, MonteCarloError};
 use crate::cancellation::Cancellation;
-use crate::sampling::{Integrator, Stepper, WholeTurn};
+use crate::sampling::{CellLookup, Integrator, Stepper, WholeTurn};
 use crate::space::CellSpace;
 use crate::system::System;
 

@@ -6,12 +6,11 @@ use rayon::prelude::*;
 
 use super::batch::{Batch, Histogram, Limits, Purpose, key, random_point};
 use super::estimate::{BLOCKS, Estimate, Tally};
-use super::lookup::CellLookup;
 use super::phases::Phases;
 use super::turning::Turning;
 use super::{MonteCarloError, Relaxation};
 use crate::cancellation::{Cancellation, Cancelled};
-use crate::sampling::{Integrator, Stepper, WholeTurn};
+use crate::sampling::{CellLookup, Integrator, Stepper, WholeTurn};
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes, System};
 
@@ -289,7 +288,7 @@ impl Worker<'_> {
         if let Some(phases) = &self.phases {
             phases.set_to_cell(&mut batch.states, number);
         }
-        block.look(self.lookup, batch, number % self.parts());
+        block.look((self.lookup, &self.stepper), batch, number % self.parts());
         if let Some(phases) = &self.phases {
             phases.set(&mut batch.states, number);
         }

@@ -120,7 +120,8 @@ pub(crate) fn step_bias(
 /// Weak order of an integrator.
 fn order(integrator: Integrator, additive: bool) -> u32 {
     match integrator {
-        Integrator::StochasticHeun | Integrator::WeakHeun if additive => 2,
+        Integrator::EulerMaruyama => 1,
+        _ if additive => 2,
         _ => 1,
     }
 }
@@ -241,9 +242,12 @@ impl<'a> Comparison<'a> {
             self.cancellation.check()?;
             self.advance(&mut coarse, &mut fine, look * LOOK, &mut stream);
             if look >= self.settle {
+                let (mut seen, mut seen_fine) = (coarse.clone(), fine.clone());
+                self.coarse.leave(&mut seen);
+                self.fine.leave(&mut seen_fine);
                 for (lane, averages) in averages.iter_mut().enumerate() {
-                    self.add(&coarse, lane, averages, 0);
-                    self.add(&fine, lane, averages, 1);
+                    self.add(&seen, lane, averages, 0);
+                    self.add(&seen_fine, lane, averages, 1);
                 }
             }
         }

@@ -18,7 +18,6 @@ mod ergodic;
 mod estimate;
 mod exit_times;
 mod halving;
-mod lookup;
 mod passage;
 mod path;
 mod phases;

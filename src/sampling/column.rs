@@ -2,6 +2,7 @@
 
 use super::SamplingOptions;
 use super::integrator::Stepper;
+use super::lookup::CellLookup;
 use super::random::{NormalStream, StreamKey};
 use super::starts::StartLattice;
 use crate::MAX_DIMENSION;
@@ -18,13 +19,16 @@ const START_BLOCK: u64 = 1 << 32;
 /// The end cells of one start cell's samples.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Column {
-    /// Distinct end cells, ascending, with the end of their stretch in `groups`; [`SINK`] comes last.
-    pub(super) destinations: Vec<(u32, u32)>,
-    /// Group of every sample, ordered by end cell and group.
-    pub(super) groups: Vec<u8>,
-    /// Σ over the samples of an end cell and group of where they started in their cell, a value an axis, from -½ to ½
-    /// of its width; in the order of `groups`. Empty unless starts are kept.
-    pub(super) starts: Vec<f32>,
+    /// Distinct end cells, ascending; [`SINK`] comes last.
+    pub(super) destinations: Vec<u32>,
+    /// What all samples show.
+    pub(super) all: Shares,
+    /// What the samples of each group show, one group after another.
+    by_group: Shares,
+    /// End of each group's stretch of `by_group`.
+    group_ends: Vec<u32>,
+    /// Number of samples.
+    pub(super) samples: usize,
     /// Moments of the end points of the samples that did not end in the sink; empty unless starts are kept.
     pub(super) ends: Vec<EndMoments>,
     /// Mean square displacement by spreading a sample evenly over its end cell, an axis; samples in the sink
@@ -44,14 +48,41 @@ pub(super) struct EndMoments {
     pub(super) count: f64,
 }
 
+/// Samples by the end cells that they share.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Shares {
+    /// Place among the column's end cells, ascending, and number of samples.
+    pub(super) counts: Vec<(u32, u32)>,
+    /// Σ over these samples of where they started in their cell, a value an axis, from -½ to ½ of its width; in the
+    /// order of `counts`. Empty unless starts are kept.
+    pub(super) starts: Vec<f32>,
+}
+
 impl Column {
-    /// Each destination with its samples' groups, ascending.
-    pub(super) fn entries(&self) -> impl Iterator<Item = (u32, &[u8])> {
-        let starts = std::iter::once(0).chain(self.destinations.iter().map(|entry| entry.1));
-        let stretch = |(&(cell, end), start): (&(u32, u32), u32)| {
-            (cell, &self.groups[start as usize..end as usize])
-        };
-        self.destinations.iter().zip(starts).map(stretch)
+    /// The counts of one group, with their numbers in `starts`, and these.
+    pub(super) fn group(&self, group: usize) -> impl Iterator<Item = (usize, (u32, u32))> {
+        let end = |group: usize| self.group_ends[group] as usize;
+        let first = if group == 0 { 0 } else { end(group - 1) };
+        let counts = &self.by_group.counts[first..end(group)];
+        (first..).zip(counts.iter().copied())
+    }
+
+    /// Where the samples of a count of a group started, all together.
+    pub(super) fn group_starts(&self, number: usize, dimension: usize) -> &[f32] {
+        &self.by_group.starts[number * dimension..(number + 1) * dimension]
+    }
+
+    /// Whether it is known where samples started.
+    pub(super) fn keeps_starts(&self) -> bool {
+        !self.all.starts.is_empty()
+    }
+
+    /// Forgets where samples started.
+    #[cfg(test)]
+    pub(super) fn forget_starts(&mut self) {
+        self.all.starts.clear();
+        self.by_group.starts.clear();
+        self.ends.clear();
     }
 }
 
@@ -62,6 +93,7 @@ pub(super) struct ColumnSampler<'a> {
     steps: usize,
     stepper: Stepper<'a>,
     lattice: StartLattice,
+    lookup: CellLookup,
     /// First sample of each group, and the number of samples at the end.
     group_starts: Vec<usize>,
 }
@@ -92,6 +124,7 @@ impl<'a> ColumnSampler<'a> {
             steps,
             stepper: Stepper::new(system, options.integrator, time_step, cancellation),
             lattice: StartLattice::new(largest, space.dimension()),
+            lookup: CellLookup::new(space),
             group_starts,
         }
     }
@@ -99,7 +132,8 @@ impl<'a> ColumnSampler<'a> {
     /// Runs the trajectories of one cell. Depends on the cell's number and the options alone.
     pub(super) fn column(&self, cell: usize) -> Result<Column, Cancelled> {
         let dimension = self.space.dimension();
-        let mut ends: Vec<End> = Vec::with_capacity(self.options.samples);
+        let mut ends: Vec<u64> = Vec::with_capacity(self.options.samples);
+        let mut found = [0; LANES];
         let keeps = self.options.keep_starts;
         let mut starts: Vec<[f32; MAX_DIMENSION]> = Vec::new();
         let mut moments = vec![EndMoments::default(); if keeps { dimension } else { 0 }];
@@ -119,11 +153,14 @@ impl<'a> ColumnSampler<'a> {
             }
             self.place_starts(cell, first, &groups, &mut states[..dimension], &mut offsets);
             let mut stream = NormalStream::new(self.key(cell, block as u64));
+            self.stepper.enter(&mut states[..dimension]);
             self.stepper
                 .advance(&mut states[..dimension], 0, self.steps, &mut stream)?;
-            for (lane, &of_lane) in groups.iter().enumerate().take(count) {
-                let end = self.find_end(lane, &states[..dimension], &mut spreading);
-                ends.push((end, of_lane as u8, (first + lane) as u32));
+            self.stepper.leave(&mut states[..dimension]);
+            self.lookup.find(&states[..dimension], &mut found);
+            for (lane, &cell) in found.iter().enumerate().take(count) {
+                let end = self.end(cell, lane, &states[..dimension], &mut spreading);
+                ends.push(u64::from(end) << 32 | (first + lane) as u64);
                 if keeps {
                     let start = offsets.map(|axis: Lanes| axis[lane] as f32);
                     starts.push(start);
@@ -133,7 +170,7 @@ impl<'a> ColumnSampler<'a> {
                 }
             }
         }
-        let mut column = compress(ends, spreading, &starts, dimension);
+        let mut column = self.compress(ends, spreading, &starts);
         column.ends = moments;
         Ok(column)
     }
@@ -172,28 +209,109 @@ impl<'a> ColumnSampler<'a> {
         }
     }
 
-    /// End cell of one lane; adds to `spreading` the mean square distance of a point spread over that cell.
-    fn find_end(&self, lane: usize, states: &[Lanes], spreading: &mut [f64]) -> u32 {
-        let mut state = [0.0; MAX_DIMENSION];
-        for (value, lanes) in state.iter_mut().zip(states) {
-            *value = lanes[lane];
-        }
-        let state = &state[..states.len()];
-        let Some(end) = self.space.find(state) else {
+    /// Number of an end cell, or that of the sink; adds to `spreading` the mean square distance of a point spread over
+    /// the cell.
+    fn end(
+        &self,
+        cell: usize,
+        lane: usize,
+        states: &[Lanes],
+        spreading: &mut [f64; MAX_DIMENSION],
+    ) -> u32 {
+        if cell == self.lookup.n_cells() {
             return SINK;
-        };
+        }
         for (axis, edges) in self.space.axes().iter().enumerate() {
-            let position = self.space.position(end, axis);
-            let off = state[axis] - edges.centre(position);
+            let position = self.space.position(cell, axis);
+            let off = states[axis][lane] - edges.centre(position);
             let width = edges.width(position);
             spreading[axis] += off * off + width * width / 12.0;
         }
-        end as u32
+        cell as u32
+    }
+
+    /// The column of samples that are numbered by end cell and sample.
+    fn compress(
+        &self,
+        mut ends: Vec<u64>,
+        mut spreading: [f64; MAX_DIMENSION],
+        starts: &[[f32; MAX_DIMENSION]],
+    ) -> Column {
+        ends.sort_unstable();
+        let cell_of = |end: &u64| (end >> 32) as u32;
+        let sample_of = |end: &u64| (end & u64::from(u32::MAX)) as usize;
+        let inside = ends.partition_point(|end| cell_of(end) != SINK);
+        for sum in &mut spreading {
+            *sum /= inside.max(1) as f64;
+        }
+        let groups = self.group_starts.len() - 1;
+        let (mut destinations, mut all) = (Vec::new(), Shares::default());
+        let mut of_groups = vec![Shares::default(); groups];
+        for of_cell in ends.chunk_by(|a, b| cell_of(a) == cell_of(b)) {
+            let place = destinations.len() as u32;
+            destinations.push(cell_of(&of_cell[0]));
+            let (mut rest, mut sums) = (of_cell, [0.0; MAX_DIMENSION]);
+            // In this order samples of a cell are ordered by their groups too.
+            for (group, shares) in of_groups.iter_mut().enumerate() {
+                if rest.is_empty() {
+                    break;
+                }
+                let until = self.group_starts[group + 1];
+                let count = rest.partition_point(|end| sample_of(end) < until);
+                let (here, others) = rest.split_at(count);
+                rest = others;
+                if !here.is_empty() {
+                    let started = here.iter().filter_map(|end| starts.get(sample_of(end)));
+                    self.add_share(shares, (place, count as u32), started, &mut sums);
+                }
+            }
+            all.counts.push((place, of_cell.len() as u32));
+            if !starts.is_empty() {
+                all.starts.extend(&sums[..self.space.dimension()]);
+            }
+        }
+        let mut by_group = Shares::default();
+        let mut group_ends = Vec::with_capacity(groups);
+        for shares in of_groups {
+            by_group.counts.extend(shares.counts);
+            by_group.starts.extend(shares.starts);
+            group_ends.push(by_group.counts.len() as u32);
+        }
+        Column {
+            destinations,
+            all,
+            by_group,
+            group_ends,
+            samples: ends.len(),
+            ends: Vec::new(),
+            spreading,
+        }
+    }
+
+    /// Adds samples of one group that ended in one cell, and where they started to `sums`.
+    fn add_share<'b>(
+        &self,
+        shares: &mut Shares,
+        count: (u32, u32),
+        started: impl Iterator<Item = &'b [f32; MAX_DIMENSION]>,
+        sums: &mut [f32; MAX_DIMENSION],
+    ) {
+        shares.counts.push(count);
+        let (mut own, mut is_kept) = ([0.0; MAX_DIMENSION], false);
+        for start in started {
+            is_kept = true;
+            for (own, start) in own.iter_mut().zip(start) {
+                *own += start;
+            }
+        }
+        if is_kept {
+            shares.starts.extend(&own[..self.space.dimension()]);
+            for (sum, own) in sums.iter_mut().zip(own) {
+                *sum += own;
+            }
+        }
     }
 }
-
-/// End cell, group and number of a sample.
-type End = (u32, u8, u32);
 
 fn add_moments(
     moments: &mut [EndMoments],
@@ -210,44 +328,5 @@ fn add_moments(
             sums[1] += x * x * f64::from(start);
         }
         moments.count += 1.0;
-    }
-}
-
-fn compress(
-    mut ends: Vec<End>,
-    mut spreading: [f64; MAX_DIMENSION],
-    starts: &[[f32; MAX_DIMENSION]],
-    dimension: usize,
-) -> Column {
-    ends.sort_unstable();
-    let mut destinations: Vec<(u32, u32)> = Vec::new();
-    for (index, &(cell, ..)) in ends.iter().enumerate() {
-        let end = index as u32 + 1;
-        match destinations.last_mut() {
-            Some(last) if last.0 == cell => last.1 = end,
-            _ => destinations.push((cell, end)),
-        }
-    }
-    let inside = ends.partition_point(|&(cell, ..)| cell != SINK);
-    for sum in &mut spreading {
-        *sum /= inside.max(1) as f64;
-    }
-    destinations.shrink_to_fit();
-    let mut sums: Vec<f32> = Vec::new();
-    if !starts.is_empty() {
-        for run in ends.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-            let of_run = run.iter().map(|end| &starts[end.2 as usize]);
-            sums.extend(
-                (0..dimension).map(|axis| of_run.clone().map(|start| start[axis]).sum::<f32>()),
-            );
-        }
-        sums.shrink_to_fit();
-    }
-    Column {
-        destinations,
-        groups: ends.into_iter().map(|(_, group, _)| group).collect(),
-        starts: sums,
-        ends: Vec::new(),
-        spreading,
     }
 }

@@ -44,7 +44,7 @@ pub fn sample_transitions(
         let sampled: Result<Vec<_>, _> = frontier.par_iter().with_max_len(1).map(sample).collect();
         let sampled = sampled?;
         let ends = sampled.iter().flat_map(|(_, column)| &column.destinations);
-        let ends = ends.map(|&(cell, _)| cell).filter(|&cell| cell != SINK);
+        let ends = ends.copied().filter(|&cell| cell != SINK);
         frontier = unknown_of(ends.map(|cell| cell as usize), &mut known);
         columns.extend(sampled);
     }

@@ -2,10 +2,14 @@
 //!
 //! Stochastic Heun averages the drift at the start of a step and at its Euler-Maruyama predictor, with the noise
 //! amplitude taken at the start (Itô). For additive noise its weak order is 2; of an undamped oscillator it takes
-//! ω⁴dt³/4 from the damping. Euler-Maruyama has weak order 1 and takes ω²dt. Where laws alone are asked for, increments
-//! of four values (`four_point.rs`) do for Heun what normal ones do.
+//! ω⁴dt³/4 from the damping. Euler-Maruyama has weak order 1 and takes ω²dt. Splitting (`splitting.rs`) moves positions
+//! by half a step before and after a step of Heun's of everything else, and takes nothing from the damping. Where laws
+//! alone are asked for, increments of four values (`four_point.rs`) do what normal ones do.
 
 use multiversion::multiversion;
+
+use splitting::rows_of;
+pub(crate) use splitting::{Position, positions};
 
 use super::random::NormalStream;
 use crate::MAX_DIMENSION;
@@ -22,9 +26,34 @@ pub enum Integrator {
     WeakHeun,
     /// Euler-Maruyama: weak order 1; takes ω² dt away from the damping of an oscillator.
     EulerMaruyama,
+    /// Positions move by half a step with their velocities, all other coordinates by a step of Heun's, positions by
+    /// half a step again (Strang 1968): weak orders as of Heun, and nothing is taken from the damping of an oscillator.
+    /// A system without positions is integrated by Heun's.
+    Splitting,
+    /// The same with increments of four values in place of normal ones.
+    WeakSplitting,
 }
 
-words! { Integrator, pub name: StochasticHeun: "heun", WeakHeun: "weak-heun", EulerMaruyama: "euler-maruyama" }
+words! {
+    Integrator, pub name:
+    StochasticHeun: "heun",
+    WeakHeun: "weak-heun",
+    EulerMaruyama: "euler-maruyama",
+    Splitting: "splitting",
+    WeakSplitting: "weak-splitting",
+}
+
+impl Integrator {
+    /// Whether increments of four values are drawn in place of normal ones.
+    fn is_for_laws(self) -> bool {
+        matches!(self, Self::WeakHeun | Self::WeakSplitting)
+    }
+
+    /// Whether positions move apart from everything else.
+    pub(crate) fn splits(self) -> bool {
+        matches!(self, Self::Splitting | Self::WeakSplitting)
+    }
+}
 
 /// Rows of normals made at once: 8 KB, which stay in the first-level cache with everything else.
 const ROWS: usize = 16;
@@ -35,6 +64,14 @@ pub(crate) struct Stepper<'a> {
     integrator: Integrator,
     time_step: f64,
     noise: Vec<Channel<'a>>,
+    /// What moves apart from the rest; nothing unless the integrator splits.
+    positions: Vec<Position>,
+    /// Axes of the rest.
+    rest: Vec<usize>,
+    /// Whether noise acts on an axis.
+    is_noisy: [bool; MAX_DIMENSION],
+    /// Amplitude times √dt and number of the noise of an axis, where it is the only one and constant.
+    only_increments: [Option<(f64, usize)>; MAX_DIMENSION],
     mirrors: Vec<Mirror>,
     turns: Vec<WholeTurn>,
     cancellation: Cancellation,
@@ -125,11 +162,29 @@ impl<'a> Stepper<'a> {
             noise,
             increment: (noise.additive()).map(|amplitude| amplitude * time_step.sqrt()),
         };
+        let positions = match integrator.splits() {
+            true => positions(system),
+            false => Vec::new(),
+        };
+        let is_position = |axis: &usize| positions.iter().any(|one| one.axis == *axis);
+        let rest = (0..system.dimension()).filter(|axis| !is_position(axis));
+        let noise: Vec<Channel<'a>> = system.noises().iter().map(channel).collect();
+        let (mut is_noisy, mut only_increments) = ([false; MAX_DIMENSION], [None; MAX_DIMENSION]);
+        for (number, channel) in noise.iter().enumerate() {
+            let axis = channel.noise.axis;
+            let only = channel.increment.map(|increment| (increment, number));
+            only_increments[axis] = only.filter(|_| !is_noisy[axis]);
+            is_noisy[axis] = true;
+        }
         Self {
             system,
             integrator,
             time_step,
-            noise: system.noises().iter().map(channel).collect(),
+            noise,
+            is_noisy,
+            only_increments,
+            rest: rest.collect(),
+            positions,
             mirrors: mirrors(system),
             turns: Vec::new(),
             cancellation: cancellation.clone(),
@@ -164,16 +219,16 @@ impl<'a> Stepper<'a> {
             more.resize(chunk * channels, [0.0; LANES]);
             &mut more
         };
-        let mut done = 0;
+        let (mut done, mut work) = (0, Work::new());
         while done < steps {
             self.cancellation.check()?;
             let count = chunk.min(steps - done);
             let normals = &mut buffer[..count * channels];
-            match self.integrator {
-                Integrator::WeakHeun => stream.fill_for_laws(normals),
-                Integrator::StochasticHeun | Integrator::EulerMaruyama => stream.fill(normals),
+            match self.integrator.is_for_laws() {
+                true => stream.fill_for_laws(normals),
+                false => stream.fill(normals),
             }
-            self.advance_with(states, first + done, count, normals);
+            self.work_through(states, first + done, count, normals, &mut work);
             done += count;
         }
         Ok(())
@@ -188,11 +243,20 @@ impl<'a> Stepper<'a> {
         steps: usize,
         normals: &[Lanes],
     ) {
+        self.work_through(states, first, steps, normals, &mut Work::new());
+    }
+
+    fn work_through(
+        &self,
+        states: &mut [Lanes],
+        first: usize,
+        steps: usize,
+        normals: &[Lanes],
+        work: &mut Work,
+    ) {
         match self.integrator {
-            Integrator::StochasticHeun | Integrator::WeakHeun => {
-                heun(self, states, first, steps, normals);
-            }
-            Integrator::EulerMaruyama => euler_maruyama(self, states, first, steps, normals),
+            Integrator::EulerMaruyama => euler_maruyama(self, states, first, steps, normals, work),
+            _ => heun(self, states, first, steps, normals, work),
         }
     }
 
@@ -207,12 +271,52 @@ impl<'a> Stepper<'a> {
         }
     }
 
+    /// Moves positions for a time.
+    #[inline(always)]
+    fn move_positions(&self, states: &mut [Lanes], time: f64) {
+        for position in &self.positions {
+            position.advance(states, time);
+        }
+    }
+
+    /// Adds dt F(x) + b ΔW to all coordinates but positions.
+    #[inline(always)]
+    fn predict(
+        &self,
+        states: &mut [Lanes],
+        drift: &[Lanes],
+        normals: &[Lanes],
+        increments: &[Lanes],
+    ) {
+        let step = self.time_step;
+        for &axis in &self.rest {
+            let (states, drift) = (&mut states[axis], &drift[axis]);
+            if let Some((increment, channel)) = self.only_increments[axis] {
+                let normal = &normals[channel];
+                for lane in 0..LANES {
+                    states[lane] += step * drift[lane] + increment * normal[lane];
+                }
+            } else if self.is_noisy[axis] {
+                let increments = &increments[axis];
+                for lane in 0..LANES {
+                    states[lane] += step * drift[lane] + increments[lane];
+                }
+            } else {
+                for lane in 0..LANES {
+                    states[lane] += step * drift[lane];
+                }
+            }
+        }
+    }
+
     /// The drift at states that may be beyond walls: that of their images, turned round along the axis of the wall.
     #[inline(always)]
-    fn drift_beyond(&self, time: f64, states: &mut [Lanes], drift: &mut [Lanes]) {
+    fn drift_beyond(&self, time: f64, states: &[Lanes], drift: &mut [Lanes]) {
         if self.mirrors.is_empty() {
             return self.system.drift(time, states, drift);
         }
+        let mut images = rows_of(states);
+        let states = &mut images[..states.len()];
         let mut signs = [[1.0; LANES]; MAX_DIMENSION];
         for mirror in &self.mirrors {
             for (x, sign) in states[mirror.axis].iter_mut().zip(&mut signs[mirror.axis]) {
@@ -229,29 +333,54 @@ impl<'a> Stepper<'a> {
         }
     }
 
-    /// Σ_k b_k ΔW_k of one step on every axis.
+    /// Σ_k b_k ΔW_k of one step on every axis with noise but those of `only_increments`, and nothing on the others.
     #[inline(always)]
     fn increments(&self, time: f64, states: &[Lanes], normals: &[Lanes], sums: &mut [Lanes]) {
-        for sum in sums.iter_mut() {
-            sum.fill(0.0);
-        }
+        let mut is_begun = [false; MAX_DIMENSION];
         for (channel, normal) in self.noise.iter().zip(normals) {
-            let sum = &mut sums[channel.noise.axis];
+            let axis = channel.noise.axis;
+            if self.only_increments[axis].is_some() {
+                continue;
+            }
+            let (sum, is_more) = (&mut sums[axis], is_begun[axis]);
+            is_begun[axis] = true;
             if let Some(increment) = channel.increment {
                 for lane in 0..LANES {
-                    sum[lane] += increment * normal[lane];
+                    let before = if is_more { sum[lane] } else { 0.0 };
+                    sum[lane] = before + increment * normal[lane];
                 }
             } else {
                 let amplitude = channel.noise.amplitudes(time, states);
                 let root = self.time_step.sqrt();
                 for lane in 0..LANES {
-                    sum[lane] += amplitude[lane] * root * normal[lane];
+                    let before = if is_more { sum[lane] } else { 0.0 };
+                    sum[lane] = before + amplitude[lane] * root * normal[lane];
                 }
             }
         }
     }
 }
 
+/// Room for what a step works out, a row an axis.
+struct Work {
+    /// Zero on axes without noise.
+    increments: [Lanes; MAX_DIMENSION],
+    start: [Lanes; MAX_DIMENSION],
+    end: [Lanes; MAX_DIMENSION],
+}
+
+impl Work {
+    fn new() -> Self {
+        let rows = [[0.0; LANES]; MAX_DIMENSION];
+        Self {
+            increments: rows,
+            start: rows,
+            end: rows,
+        }
+    }
+}
+
+/// Steps of Heun's of all axes, or of those that are no positions between half steps of these.
 #[multiversion(targets = "simd")]
 fn heun(
     stepper: &Stepper<'_>,
@@ -259,31 +388,36 @@ fn heun(
     first: usize,
     steps: usize,
     normals: &[Lanes],
+    work: &mut Work,
 ) {
     let (dimension, channels) = (states.len(), stepper.noise.len());
     let (step, half) = (stepper.time_step, 0.5 * stepper.time_step);
-    let mut work = [[[0.0; LANES]; MAX_DIMENSION]; 4];
-    let [increments, predictor, start, end] = &mut work;
-    let (increments, predictor) = (&mut increments[..dimension], &mut predictor[..dimension]);
+    let Work {
+        increments,
+        start,
+        end,
+    } = work;
     let (start, end) = (&mut start[..dimension], &mut end[..dimension]);
+    stepper.move_positions(states, half);
     for number in 0..steps {
         let time = (first + number) as f64 * step;
+        // Time is a position too.
+        let times = match stepper.positions.is_empty() {
+            true => [time, time + step],
+            false => [time + half; 2],
+        };
         let normals = &normals[number * channels..(number + 1) * channels];
-        stepper.increments(time, states, normals, increments);
-        stepper.system.drift(time, states, start);
-        for axis in 0..dimension {
+        stepper.system.drift(times[0], states, start);
+        stepper.increments(times[0], states, normals, increments);
+        // States become those of the predictor x + dt F(x) + b ΔW, and then go on by dt/2 (F(predictor) - F(x)).
+        stepper.predict(states, start, normals, increments);
+        stepper.drift_beyond(times[1], states, end);
+        for &axis in &stepper.rest {
             for lane in 0..LANES {
-                predictor[axis][lane] =
-                    states[axis][lane] + (step * start[axis][lane] + increments[axis][lane]);
+                states[axis][lane] += half * (end[axis][lane] - start[axis][lane]);
             }
         }
-        stepper.drift_beyond(time + step, predictor, end);
-        for axis in 0..dimension {
-            for lane in 0..LANES {
-                let drift = half * (start[axis][lane] + end[axis][lane]);
-                states[axis][lane] += drift + increments[axis][lane];
-            }
-        }
+        stepper.move_positions(states, if number + 1 < steps { step } else { half });
         stepper.fold(states);
     }
 }
@@ -295,25 +429,24 @@ fn euler_maruyama(
     first: usize,
     steps: usize,
     normals: &[Lanes],
+    work: &mut Work,
 ) {
     let (dimension, channels) = (states.len(), stepper.noise.len());
     let step = stepper.time_step;
-    let mut work = [[[0.0; LANES]; MAX_DIMENSION]; 2];
-    let [increments, start] = &mut work;
-    let (increments, start) = (&mut increments[..dimension], &mut start[..dimension]);
+    let Work {
+        increments, start, ..
+    } = work;
+    let start = &mut start[..dimension];
     for number in 0..steps {
         let time = (first + number) as f64 * step;
         let normals = &normals[number * channels..(number + 1) * channels];
         stepper.increments(time, states, normals, increments);
         stepper.system.drift(time, states, start);
-        for axis in 0..dimension {
-            for lane in 0..LANES {
-                states[axis][lane] += step * start[axis][lane] + increments[axis][lane];
-            }
-        }
+        stepper.predict(states, start, normals, increments);
         stepper.fold(states);
     }
 }
 
+mod splitting;
 #[cfg(test)]
 mod tests;

@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, Schur};
 
+use super::integrator::Position;
 use crate::space::CellSpace;
 use crate::system::System;
 
@@ -20,13 +21,20 @@ pub(super) struct LocalRates {
     pub(super) fastest: f64,
     /// Damping -2 Re λ of the energy of the fastest oscillating pair; `None` where nothing oscillates.
     pub(super) damping: Option<f64>,
+    /// The largest of half of |λ|, of |λ| where positions stand, and of what noises say: what limits the step of an
+    /// integrator that moves positions apart. As `fastest` where there are no positions.
+    pub(super) split: f64,
 }
+
+/// Length of a step that moves positions apart over that of Heun's, where nothing but the motion of positions limits it.
+const LONGER: f64 = 2.0;
 
 /// Rates at a state in Ω; `None` next to a switching surface, outside Ω, and where the drift is not finite.
 pub(super) fn local_rates(
     system: &dyn System,
     space: &CellSpace,
     state: &[f64],
+    positions: &[Position],
 ) -> Option<LocalRates> {
     let cell = space.find(state)?;
     let dimension = state.len();
@@ -52,16 +60,33 @@ pub(super) fn local_rates(
     if !jacobian.iter().all(|entry| entry.is_finite()) {
         return None;
     }
+    let is_position = |axis: &usize| positions.iter().any(|one| one.axis == *axis);
+    let rest: Vec<usize> = (0..dimension).filter(|axis| !is_position(axis)).collect();
+    let of_rest = jacobian.select_rows(&rest).select_columns(&rest);
     let eigenvalues = Schur::try_new(jacobian, 1e-12, 1000)?.complex_eigenvalues();
-    let fastest = eigenvalues
+    let kicks = noise_rate(system, state, &width);
+    let all = eigenvalues
         .iter()
         .map(|value| value.norm())
-        .fold(noise_rate(system, state, &width), f64::max);
+        .fold(0.0, f64::max);
+    let fastest = all.max(kicks);
+    let split = match positions.is_empty() {
+        true => fastest,
+        false => {
+            let of_rest = Schur::try_new(of_rest, 1e-12, 1000)?.complex_eigenvalues();
+            let still = of_rest
+                .iter()
+                .map(|value| value.norm())
+                .fold(kicks, f64::max);
+            still.max(all / LONGER)
+        }
+    };
     let oscillating = eigenvalues.iter().filter(|value| value.im > 0.0);
     let pair = oscillating.max_by(|a, b| a.im.total_cmp(&b.im));
     Some(LocalRates {
         fastest,
         damping: pair.map(|value| -2.0 * value.re),
+        split,
     })
 }
 
@@ -86,6 +111,7 @@ fn noise_rate(system: &dyn System, state: &[f64], width: &dyn Fn(usize) -> f64) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sampling::integrator::positions;
     use crate::space::Axis;
     use crate::system::test_families::built_in;
     use crate::system::{Interpretation, TypedModel};
@@ -103,11 +129,16 @@ mod tests {
         let axis = Axis::uniform(-2.0, 2.0, 40).unwrap();
         let space = CellSpace::new(vec![axis.clone(), axis]).unwrap();
         // ω² = α + 3μx² = 3.5 at x = 1; the damping of the energy is κ.
-        let rates = local_rates(&*system, &space, &[1.0, 0.5]).unwrap();
+        let rates = local_rates(&*system, &space, &[1.0, 0.5], &positions(&*system)).unwrap();
         assert!((rates.fastest - f64::sqrt(3.5)).abs() < 1e-6, "{rates:?}");
         assert!((rates.damping.unwrap() - 0.1).abs() < 1e-8, "{rates:?}");
-        assert_eq!(local_rates(&*system, &space, &[1.0, 1e-5]), None);
-        assert_eq!(local_rates(&*system, &space, &[3.0, 1.0]), None);
+        // Half of it where the displacement moves apart, since the damping alone is slower than that.
+        assert!(
+            (rates.split - 0.5 * rates.fastest).abs() < 1e-9,
+            "{rates:?}"
+        );
+        assert_eq!(local_rates(&*system, &space, &[1.0, 1e-5], &[]), None);
+        assert_eq!(local_rates(&*system, &space, &[3.0, 1.0], &[]), None);
     }
 
     #[test]
@@ -122,7 +153,7 @@ mod tests {
         let space = CellSpace::new(vec![Axis::uniform(0.0, 1.0, 50).unwrap()]).unwrap();
         // b' = 2 (1 - 2x): 1.6 at 0.1, and nothing in the middle, where only the drift is left.
         for (x, fastest) in [(0.1, 4.0 * 1.6 * 1.6), (0.5, 1.0)] {
-            let rates = local_rates(&*system, &space, &[x]).unwrap();
+            let rates = local_rates(&*system, &space, &[x], &[]).unwrap();
             assert!((rates.fastest - fastest).abs() < 1e-6, "{rates:?}");
         }
     }
@@ -132,7 +163,7 @@ mod tests {
         let values = [("a", 1.0), ("sigma2", 0.1)];
         let system = built_in("bistable", &values);
         let space = CellSpace::new(vec![Axis::uniform(-2.0, 2.0, 40).unwrap()]).unwrap();
-        let rates = local_rates(&*system, &space, &[1.0]).unwrap();
+        let rates = local_rates(&*system, &space, &[1.0], &[]).unwrap();
         assert!((rates.fastest - 2.0).abs() < 1e-6, "{rates:?}");
         assert_eq!(rates.damping, None);
     }

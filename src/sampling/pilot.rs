@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::Integrator;
-use super::integrator::Stepper;
+use super::integrator::{Position, Stepper, positions};
 use super::jacobian::{LocalRates, local_rates};
 use super::random::{NormalStream, StreamKey, mix, unit};
 use crate::cancellation::{Cancellation, Cancelled};
@@ -70,11 +70,16 @@ pub struct Pilot {
     /// κ); zero where nothing oscillates. Negative values mean that energy is fed in. Damping of other
     /// directions, such as Dahl's z, does not count: it would hide how little holds the oscillation back.
     pub damping: f64,
+    /// What takes the place of ω for an integrator that moves positions apart (coordinates without noise that a
+    /// velocity moves): the largest of ω/2, of the rates at which everything else changes where they stand, and of
+    /// what noises say. `None` without positions.
+    pub split_frequency: Option<f64>,
 }
 
 impl Pilot {
     /// A time step for an integrator: dt ≤ 0.1/ω, and where the oscillation is damped by γ > 0, the damping that
-    /// the integrator takes away, ω⁴dt³/4 for Heun and ω²dt for Euler-Maruyama, at most 1 % of γ.
+    /// the integrator takes away, ω⁴dt³/4 for Heun and ω²dt for Euler-Maruyama, at most 1 % of γ. Splitting takes
+    /// nothing away, and has another ω ([`Pilot::split_frequency`]).
     pub fn automatic_time_step(&self, integrator: Integrator) -> f64 {
         self.time_step_within(integrator, DAMPING_SHARE)
     }
@@ -82,8 +87,13 @@ impl Pilot {
     /// The same with another share of the damping than 1 %: about the relative error of the variances that the step
     /// leaves.
     pub(crate) fn time_step_within(&self, integrator: Integrator, share: f64) -> f64 {
-        let (frequency, damping) = (self.frequency, self.damping);
-        time_step(frequency, frequency, damping, share, integrator)
+        match self.split_frequency.filter(|_| integrator.splits()) {
+            Some(split) => time_step((split, split), 0.0, share, integrator),
+            None => {
+                let frequency = self.frequency;
+                time_step((frequency, frequency), self.damping, share, integrator)
+            }
+        }
     }
 
     /// The smallest map step Δt for which the numerical diffusion h²/(12Δt) stays below 5 % of the noise, each
@@ -138,15 +148,18 @@ impl Pilot {
 }
 
 /// The largest step with dt ≤ 0.1/`fastest` and an anti-damping at `typical` below a share of `damping`.
-fn time_step(fastest: f64, typical: f64, damping: f64, share: f64, integrator: Integrator) -> f64 {
+fn time_step(
+    (fastest, typical): (f64, f64),
+    damping: f64,
+    share: f64,
+    integrator: Integrator,
+) -> f64 {
     let mut step = ANGLE / fastest.max(f64::MIN_POSITIVE);
     if damping > 0.0 && typical > 0.0 {
         let spare = share * damping;
         step = step.min(match integrator {
-            Integrator::StochasticHeun | Integrator::WeakHeun => {
-                (4.0 * spare / typical.powi(4)).cbrt()
-            }
             Integrator::EulerMaruyama => spare / typical.powi(2),
+            _ => (4.0 * spare / typical.powi(4)).cbrt(),
         });
     }
     if step.is_finite() { step } else { 1.0 }
@@ -179,16 +192,16 @@ pub fn pilot(
     cancellation: &Cancellation,
 ) -> Result<Pilot, Cancelled> {
     let scouts = (0..SCOUTS).map(|scout| place(space, seed, scout, true));
+    let positions = positions(system);
     let scouted: Vec<LocalRates> = scouts
-        .filter_map(|state| local_rates(system, space, &state))
+        .filter_map(|state| local_rates(system, space, &state, &positions))
         .collect();
     let crossing = rate_across(system, space, seed);
     let (fastest, damping) = summary(&scouted, 1.0);
     let (typical, _) = summary(&scouted, 0.5);
     let [fastest, typical] = [fastest, typical].map(|rate| rate.max(crossing));
     let step = time_step(
-        fastest,
-        typical,
+        (fastest, typical),
         damping,
         DAMPING_SHARE,
         Integrator::StochasticHeun,
@@ -202,15 +215,16 @@ pub fn pilot(
     };
     let steps = ((settling / step) as usize).clamp(RECORDS, MOST_STEPS);
     let stepper = Stepper::new(system, Integrator::StochasticHeun, step, cancellation);
-    let run = |batch: u64| trajectories(&stepper, system, space, seed, batch, steps);
+    let run = |batch: u64| trajectories((&stepper, &positions), system, space, seed, batch, steps);
     let records: Result<Vec<Record>, _> = (0..BATCHES).into_par_iter().map(run).collect();
-    let mut record = Record::new(space);
+    let mut record = Record::new(space, &positions);
     for of_batch in &records? {
         record.join(of_batch);
     }
     if record.inside == 0 {
         let outside = record.outside.clone();
-        let seen = nothing_stays(system, space, seed, (scouted, 2 * steps));
+        let empty = Record::new(space, &positions);
+        let seen = nothing_stays(system, space, seed, (scouted, 2 * steps), empty);
         return Ok(Pilot { outside, ..seen });
     }
     Ok(record.finish(2 * steps))
@@ -242,8 +256,8 @@ fn nothing_stays(
     space: &CellSpace,
     seed: u64,
     (rates, steps): (Vec<LocalRates>, usize),
+    mut record: Record,
 ) -> Pilot {
-    let mut record = Record::new(space);
     for scout in 0..SCOUTS {
         record.visit(system, space, &place(space, seed, scout, true));
     }
@@ -277,7 +291,7 @@ fn place(space: &CellSpace, seed: u64, point: u64, spread: bool) -> Vec<f64> {
 
 /// One batch: settles for `steps` steps and is recorded during as many again.
 fn trajectories(
-    stepper: &Stepper<'_>,
+    (stepper, positions): (&Stepper<'_>, &[Position]),
     system: &dyn System,
     space: &CellSpace,
     seed: u64,
@@ -298,7 +312,7 @@ fn trajectories(
         block: batch,
     });
     stepper.advance(&mut states, 0, steps, &mut stream)?;
-    let mut record = Record::new(space);
+    let mut record = Record::new(space, positions);
     let mut done = steps;
     for visit in 1..=RECORDS {
         let until = steps + visit * steps / RECORDS;

@@ -50,7 +50,7 @@ impl SampledTransitions {
             position[cell] = index as u32;
         }
         for column in &mut columns {
-            for (cell, _) in &mut column.destinations {
+            for cell in &mut column.destinations {
                 *cell = position.get(*cell as usize).copied().unwrap_or(SINK);
             }
         }
@@ -81,7 +81,7 @@ impl SampledTransitions {
 
     /// Integrator steps of all trajectories together: the work that was done.
     pub(crate) fn n_steps(&self) -> u64 {
-        let samples: usize = self.columns.iter().map(|column| column.groups.len()).sum();
+        let samples: usize = self.columns.iter().map(|column| column.samples).sum();
         samples as u64 * (self.map_step / self.time_step).round() as u64
     }
 
@@ -114,15 +114,12 @@ impl SampledTransitions {
     /// Forgets where samples started, as if they had not been kept.
     #[cfg(test)]
     pub(crate) fn forget_starts(&mut self) {
-        for column in &mut self.columns {
-            column.starts.clear();
-            column.ends.clear();
-        }
+        self.columns.iter_mut().for_each(Column::forget_starts);
     }
 
     /// Whether it is known where in their cells the samples started.
     pub(crate) fn keeps_starts(&self) -> bool {
-        self.columns.iter().any(|column| !column.starts.is_empty())
+        self.columns.iter().any(Column::keeps_starts)
     }
 
     /// Diffusion that the cells add, one value an axis, in units of the axis squared per unit time:
@@ -159,7 +156,7 @@ impl SampledTransitions {
             let (mut ends, mut cells) = ([0.0; 3], [0.0; 3]);
             for (j, column) in self.columns.iter().enumerate() {
                 let (moments, slope) = (&column.ends[axis], &slopes[j]);
-                let samples = column.groups.len() as f64;
+                let samples = column.samples as f64;
                 let weighted = |power: usize| -> f64 {
                     let by_start = moments.by_start.iter().zip(slope);
                     moments.plain[power] + by_start.map(|(sums, s)| sums[power] * s).sum::<f64>()
@@ -193,29 +190,29 @@ impl SampledTransitions {
     ) {
         weights.clear();
         let dimension = self.dimension;
-        let slope = slope.filter(|_| !column.starts.is_empty());
-        let mut run = 0;
-        for (cell, groups) in column.entries() {
-            let (mut count, mut tilt) = (0, 0.0);
-            let Some(slope) = slope else {
-                let counts = |group: &&u8| left_out != Some(usize::from(**group));
-                count = groups.iter().filter(counts).count();
-                if count > 0 {
-                    weights.push((cell, count as f64));
+        let slope = slope.filter(|_| column.keeps_starts());
+        let tilt = |starts: &[f32], slope: &[f64; MAX_DIMENSION]| -> f64 {
+            let terms = starts.iter().zip(slope);
+            terms.map(|(&start, s)| f64::from(start) * s).sum()
+        };
+        let mut left_out = left_out.into_iter().flat_map(|group| column.group(group));
+        let mut next = left_out.next();
+        for (number, &(place, count)) in column.all.counts.iter().enumerate() {
+            let mut count = count;
+            let all = column.all.starts.chunks_exact(dimension).nth(number);
+            let mut tilted = slope
+                .zip(all)
+                .map_or(0.0, |(slope, starts)| tilt(starts, slope));
+            if let Some((of_group, (_, without))) = next.filter(|(_, share)| share.0 == place) {
+                count -= without;
+                if let Some(slope) = slope {
+                    tilted -= tilt(column.group_starts(of_group, dimension), slope);
                 }
-                continue;
-            };
-            for stretch in groups.chunk_by(|a, b| a == b) {
-                if left_out != Some(usize::from(stretch[0])) {
-                    count += stretch.len();
-                    let starts = &column.starts[run * dimension..(run + 1) * dimension];
-                    let terms = starts.iter().zip(slope);
-                    tilt += terms.map(|(&start, s)| f64::from(start) * s).sum::<f64>();
-                }
-                run += 1;
+                next = left_out.next();
             }
             if count > 0 {
-                weights.push((cell, count as f64 + tilt));
+                let cell = column.destinations[place as usize];
+                weights.push((cell, f64::from(count) + tilted));
             }
         }
     }

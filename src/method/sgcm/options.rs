@@ -56,7 +56,7 @@ impl Default for SgcmOptions {
             time_step: StepChoice::Auto,
             samples: 2000,
             seed: 1,
-            integrator: Integrator::WeakHeun,
+            integrator: Integrator::WeakSplitting,
             replicates: 8,
             correction: Correction::Slope,
             solver: Solver::MultilevelAggregation,

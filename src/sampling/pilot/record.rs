@@ -1,6 +1,6 @@
 //! Sums over the states that a pilot's trajectories visit.
 
-use super::{LocalRates, Pilot, SLOWER_THAN_SPREAD, local_rates, summary};
+use super::{LocalRates, Pilot, Position, SLOWER_THAN_SPREAD, local_rates, quantile, summary};
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes, System};
 
@@ -12,6 +12,7 @@ pub(super) struct Record {
     pub(super) inside: usize,
     /// Local rates at some of the visits.
     pub(super) rates: Vec<LocalRates>,
+    positions: Vec<Position>,
     visits: usize,
     axes: Vec<AxisSums>,
     /// States beyond the range of each axis, or no numbers.
@@ -29,7 +30,7 @@ struct AxisSums {
 }
 
 impl Record {
-    pub(super) fn new(space: &CellSpace) -> Self {
+    pub(super) fn new(space: &CellSpace, positions: &[Position]) -> Self {
         let middle = |axis: &crate::space::Axis| AxisSums {
             middle: 0.5 * (axis.from() + axis.to()),
             ..AxisSums::default()
@@ -38,6 +39,7 @@ impl Record {
             cells: Vec::new(),
             inside: 0,
             rates: Vec::new(),
+            positions: positions.to_vec(),
             visits: 0,
             axes: space.axes().iter().map(middle).collect(),
             outside: vec![0; space.dimension()],
@@ -59,7 +61,8 @@ impl Record {
             }
             self.visit(system, space, &state);
             if rates && lane % 4 == 0 {
-                self.rates.extend(local_rates(system, space, &state));
+                let rates = local_rates(system, space, &state, &self.positions);
+                self.rates.extend(rates);
             }
         }
         self.visits += LANES;
@@ -110,6 +113,7 @@ impl Record {
         let count = self.inside.max(1) as f64;
         let axis = |value: &dyn Fn(&AxisSums) -> f64| self.axes.iter().map(value).collect();
         let (frequency, damping) = summary(&self.rates, 0.99);
+        let split = quantile(self.rates.iter().map(|rate| rate.split).collect(), 0.99);
         let standard_deviation: Vec<f64> = axis(&|sums| {
             let mean = sums.first / count;
             (sums.second / count - mean * mean).max(0.0).sqrt()
@@ -126,6 +130,8 @@ impl Record {
             mean_square_width: axis(&|sums| sums.square_width / count),
             noise_intensity,
             frequency: frequency.max(SLOWER_THAN_SPREAD * crossing),
+            split_frequency: (!self.positions.is_empty())
+                .then_some(split.max(SLOWER_THAN_SPREAD * crossing)),
             damping,
             cells: self.cells,
         }

@@ -142,8 +142,9 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("method.seed", Kind::Integer(0, i64::MAX as i128), OfOptions, of_methods!(seed: Sgcm sgcm, MonteCarlo monte_carlo),
         "seed of the random streams; the same seed gives the same numbers bit for bit."),
     key("method.integrator", Kind::Choice(Integrator::words), OfOptions, of_methods!(integrator: Sgcm sgcm, MonteCarlo monte_carlo),
-        "integrator of the trajectories. `weak-heun` draws increments of four values in place of normal ones: the same laws to \
-         the same order, sooner. `euler-maruyama` takes ω²·time_step away from the damping."),
+        "integrator of the trajectories. `splitting` moves positions apart from velocities, which takes nothing from the damping \
+         and allows longer steps. `weak-heun` and `weak-splitting` draw increments of four values in place of normal ones: the \
+         same laws to the same order, sooner. `euler-maruyama` takes ω²·time_step away from the damping."),
     key("method.replicates", Kind::Integer(2, 256), OfOptions, of_methods!(replicates: Sgcm sgcm),
         "groups the samples are split into to estimate the sampling error; at most `samples`."),
     key("method.correction", Kind::Choice(Correction::words), OfOptions, of_methods!(correction: Sgcm sgcm),

@@ -87,13 +87,13 @@ impl AxisLookup {
 
 /// A cell space prepared for lookups.
 #[derive(Debug, Clone)]
-pub(super) struct CellLookup {
+pub(crate) struct CellLookup {
     axes: Vec<(AxisLookup, usize)>,
     n_cells: usize,
 }
 
 impl CellLookup {
-    pub(super) fn new(space: &CellSpace) -> Self {
+    pub(crate) fn new(space: &CellSpace) -> Self {
         let mut stride = space.n_cells();
         let axis = |axis: &Axis| {
             stride /= axis.count();
@@ -106,13 +106,13 @@ impl CellLookup {
     }
 
     /// Number of cells; also the number that stands for the sink.
-    pub(super) fn n_cells(&self) -> usize {
+    pub(crate) fn n_cells(&self) -> usize {
         self.n_cells
     }
 
     /// Cells of a batch; the sink's number for states outside Ω and those that are not numbers.
     #[inline(always)]
-    pub(super) fn find(&self, states: &[[f64; LANES]], cells: &mut [usize; LANES]) {
+    pub(crate) fn find(&self, states: &[[f64; LANES]], cells: &mut [usize; LANES]) {
         cells.fill(0);
         let mut outside = [false; LANES];
         for (lanes, (axis, stride)) in states.iter().zip(&self.axes) {
