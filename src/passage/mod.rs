@@ -77,6 +77,7 @@ mod timed;
 pub use density_start::KnownDensity;
 pub use field::{FieldTarget, PassageField, field};
 pub(crate) use memory::PassageMemory;
+pub(crate) use reactive::are_apart;
 pub use reactive::{Reactive, reactive};
 pub(crate) use timed::timed_from;
 pub use timed::{Timed, WithError, timed};

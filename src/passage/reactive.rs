@@ -102,7 +102,10 @@ pub fn reactive(
 }
 
 /// Nothing, if both regions have cells, and none in common.
-fn are_apart(space: &CellSpace, [from, to]: [&BoundQuantity; 2]) -> Result<(), PassageError> {
+pub(crate) fn are_apart(
+    space: &CellSpace,
+    [from, to]: [&BoundQuantity; 2],
+) -> Result<(), PassageError> {
     let [from, to] = [levels(space, from)?, levels(space, to)?];
     let is_in = |level: &f64| *level < 0.0;
     if !to.iter().any(is_in) {
