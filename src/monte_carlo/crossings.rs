@@ -17,6 +17,9 @@ const TO: usize = 1;
 /// Exponent from which on a probability e^-x is none.
 const NEVER: f64 = 40.0;
 
+/// Levels of a region, and the root of the variance that noise gives each per unit of time.
+type Levels = (Lanes, Lanes);
+
 /// What was counted on a trajectory.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Tally {
@@ -91,10 +94,10 @@ impl Ends {
 
     /// Probability that a path which is outside at both ends was not inside between them.
     fn unmet(&self) -> f64 {
-        let exponent = 2.0 * self.before * self.after / self.variance;
-        match exponent < NEVER {
-            true => -(-exponent).exp_m1(),
-            false => 1.0,
+        if self.variance > 0.0 {
+            -(-2.0 * self.before * self.after / self.variance).exp_m1()
+        } else {
+            1.0
         }
     }
 
@@ -117,8 +120,8 @@ pub(super) struct Crossings<'a> {
     stepper: Stepper<'a>,
     time_step: f64,
     states: Vec<Lanes>,
-    /// Levels of both regions, and the root of the variance that noise gives each per unit of time.
-    seen: [(Lanes, Lanes); 2],
+    /// Levels of both regions.
+    seen: [Levels; 2],
     /// Probability that a region was not met since random numbers were used up, and how many were.
     unmet: [Lanes; 2],
     drawn: [[u8; LANES]; 2],
@@ -178,7 +181,12 @@ impl<'a> Crossings<'a> {
         self.stepper.advance_with(&mut self.states, 0, 1, normals);
         let before = self.seen;
         self.seen = [FROM, TO].map(|region| self.borders[region].at(&self.states));
-        for lane in 0..LANES {
+        let near = [FROM, TO].map(|region| self.near(&before, region));
+        for (lane, near_from) in near[FROM].into_iter().enumerate() {
+            let waits_for_second = self.region[lane] != Some(TO);
+            if !(near_from || waits_for_second && near[TO][lane]) {
+                continue;
+            }
             let of_from = self.met(&before, (lane, FROM), chances);
             match (self.region[lane], of_from) {
                 (Some(FROM), _) => match self.met(&before, (lane, TO), chances) {
@@ -208,6 +216,16 @@ impl<'a> Crossings<'a> {
         self.steps += 1;
     }
 
+    /// Which trajectories may have met a region in the step that was made.
+    fn near(&self, before: &[Levels; 2], region: usize) -> [bool; LANES] {
+        let ((from, speeds), (to, next_speeds)) = (&before[region], &self.seen[region]);
+        let unit = 0.5 * NEVER * self.time_step;
+        std::array::from_fn(|lane| {
+            let is_far = from[lane] * to[lane] >= unit * speeds[lane] * next_speeds[lane];
+            from[lane] < 0.0 || to[lane] < 0.0 || !is_far
+        })
+    }
+
     /// The moment of a share of the step that is being made.
     fn moment(&self, share: f64) -> f64 {
         (self.steps as f64 + share) * self.time_step
@@ -227,11 +245,15 @@ impl<'a> Crossings<'a> {
     /// How a trajectory met a region in the step that was made; `None` where it did not.
     fn met(
         &mut self,
-        before: &[(Lanes, Lanes); 2],
+        before: &[Levels; 2],
         (lane, region): (usize, usize),
         chances: &Chances,
     ) -> Option<Meeting> {
-        let at = |(levels, speeds): &(Lanes, Lanes)| (levels[lane], speeds[lane]);
+        let at = |(levels, speeds): &Levels| (levels[lane], speeds[lane]);
+        if before[region].0[lane] < 0.0 && self.seen[region].0[lane] < 0.0 {
+            let (first, last) = (0.0, 1.0);
+            return Some(Meeting { first, last });
+        }
         let ends = Ends::new(at(&before[region]), at(&self.seen[region]), self.time_step);
         let (unmet, drawn) = (&mut self.unmet[region][lane], &mut self.drawn[region][lane]);
         match (ends.before < 0.0, ends.after < 0.0) {

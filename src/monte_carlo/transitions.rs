@@ -261,3 +261,71 @@ impl<'a> Pair<'a> {
         coarse.into_iter().zip(fine).map(|(a, b)| [a, b]).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::Axis;
+    use crate::system::{TypedModel, regions};
+
+    /// x' = -x + √2 ξ from below -1/2 to above 1/2, with so many transitions wanted.
+    fn counted(wanted: usize, most_steps: f64) -> Transitions {
+        let model = TypedModel::new("one", "One", vec!["x"]).with_equation("x", "-x");
+        let model = model.with_noise("x", ["sqrt(2)"]);
+        let model = model.build().unwrap();
+        let values = model.values(&[]).unwrap();
+        let [from, to] = ["x < -0.5", "x > 0.5"].map(|text| {
+            let region = regions(&model, &[("one", text)]).unwrap().remove(0);
+            region.level().bind(&values).unwrap()
+        });
+        let space = CellSpace::new(vec![Axis::uniform(-4.0, 4.0, 40).unwrap()]).unwrap();
+        let system = model.system_with(&[]).unwrap();
+        let run = TransitionRun {
+            time_step: 0.05,
+            integrator: Integrator::StochasticHeun,
+            seed: 4,
+            burn_in: 8.0,
+            transitions: wanted,
+            most_steps,
+        };
+        let on = (&*system, &space);
+        transitions(on, [&from, &to], &[], &run, &Cancellation::new()).unwrap()
+    }
+
+    #[test]
+    fn a_process_goes_from_one_side_to_the_other_as_quadrature_says() {
+        // With p = exp(-x²/2)/√(2π) and q' in proportion to exp(x²/2) between the borders, the flux is p q', and on the
+        // way is ∫ p q (1 - q). For each side it was the last one half of the time.
+        let places = (0..4000).map(|step| -0.5 + (f64::from(step) + 0.5) / 4000.0);
+        let slope = |x: f64| (0.5 * x * x).exp() / 4000.0;
+        let rising: f64 = places.clone().map(slope).sum();
+        let root = (2.0 * std::f64::consts::PI).sqrt();
+        let (mut q, mut way, flux) = (0.0, 0.0, 1.0 / (root * rising));
+        for x in places {
+            let middle = q + 0.5 * slope(x) / rising;
+            way += (-0.5 * x * x).exp() / root * middle * (1.0 - middle) / 4000.0;
+            q += slope(x) / rising;
+        }
+        let found = counted(20_000, 1e9);
+        assert!(found.count() >= 20_000 && found.runaways() == 0);
+        let exact = [flux, 2.0 * flux, way / flux];
+        for (number, exact) in found.numbers().iter().zip(exact) {
+            let (off, error) = (number.value - exact, number.error());
+            assert!(off.abs() < 3.0 * error, "{number:?}, exactly {exact}");
+            assert!(error < 0.02 * exact, "{number:?}");
+        }
+    }
+
+    #[test]
+    fn trajectories_are_the_same_for_any_number_of_threads_and_end_with_their_steps() {
+        let with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            pool.build().unwrap().install(|| counted(1000, 1e9))
+        };
+        let one = with(1);
+        assert_eq!(one, with(2));
+        assert_eq!(one.numbers(), with(3).numbers());
+        let short = counted(1_000_000, 3e6);
+        assert!(short.count() < 1_000_000 && short.steps() <= 3e6);
+    }
+}

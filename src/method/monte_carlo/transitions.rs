@@ -34,13 +34,19 @@ impl Setting<'_> {
         if let Err(PassageError::Overlap) = are_apart(space, regions) {
             return Ok(Err(PassageFault::Overlap));
         }
+        // All pairs of trajectories together last as long as the paths of a passage may.
+        let steps = |longest: f64| (3 * options.passages) as f64 * longest / plan.time_step;
+        let most_steps = match options.longest_passage {
+            StepChoice::Fixed(longest) => steps(longest),
+            StepChoice::Auto => MonteCarloOptions::PASSAGE_STEPS,
+        };
         let mut run = TransitionRun {
             time_step: plan.time_step,
             integrator: options.integrator,
             seed: options.seed,
             burn_in: plan.burn_in,
             transitions: options.passages,
-            most_steps: MonteCarloOptions::PASSAGE_STEPS,
+            most_steps,
         };
         loop {
             let on = (system, space);
@@ -55,7 +61,7 @@ impl Setting<'_> {
             }
             let is_biased = numbers.iter().any(ExitNumber::is_biased);
             let may_halve = options.time_step == StepChoice::Auto && is_biased;
-            if !may_halve || 2.0 * found.steps() > run.most_steps {
+            if !may_halve || 2.0 * found.steps() > most_steps {
                 return Ok(Ok(numbers));
             }
             run.time_step *= 0.5;
