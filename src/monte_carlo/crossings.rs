@@ -1,5 +1,5 @@
-//! Trajectories between two regions, a batch at a time: in which of the two each was last, how long it was that, and how
-//! long it was on its way from the one to the other.
+//! Trajectories between two regions, a batch at a time: in which of the two each was last, for how long, and how long
+//! it was on its way from the one to the other.
 //!
 //! Where noise acts on the level of a region, a trajectory may have been inside between two states that are outside, as
 //! in `walk.rs`. The first moment inside within a step is drawn from the bridge's distribution, and the last one from

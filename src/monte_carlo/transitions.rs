@@ -113,9 +113,9 @@ fn numbers_of(tally: &Tally) -> Vec<f64> {
     ]
 }
 
-/// Counts transitions from the first of two regions, given by their levels, to the second on long trajectories that
-/// start from `states` (any, d values each; settled ones of a [`super::Relaxation`] need the least burn-in). Results are
-/// the same bits for any number of threads.
+/// Counts transitions from the first of two regions, given by their levels, to the second, on long trajectories that
+/// start from `states` (any, d values each; settled ones of a [`super::Relaxation`] need the least burn-in; all over Ω
+/// without any). Results are the same bits for any number of threads.
 ///
 /// # Errors
 /// [`MonteCarloError`].

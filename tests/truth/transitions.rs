@@ -244,6 +244,11 @@ fn transitions_between_circles_go_round_with_a_rotation() {
     let p = |r: f64| (-r * r / (2.0 * d)).exp() / (2.0 * std::f64::consts::PI * d);
     // 2πr D p q'.
     let flux = 1.0 / whole;
+    let way = (0..n).map(|k| {
+        let r = 0.4 + (k as f64 + 0.5) * h;
+        2.0 * std::f64::consts::PI * r * h * p(r) * q(r) * (1.0 - q(r))
+    });
+    let duration = way.sum::<f64>() / flux;
     for cells in [40, 60, 100, 160] {
         let axis = (-3.6, 3.6, cells);
         let Found { space, reactive } = found(&plane, parts, &[axis, axis]);
@@ -265,6 +270,7 @@ fn transitions_between_circles_go_round_with_a_rotation() {
         };
         let shares = [
             holds(&format!("flux, {cells}"), reactive.flux, flux),
+            holds("duration", reactive.duration, duration),
             off(&space, &reactive.density, "density", |state| {
                 let (r, ..) = polar(state)?;
                 Some(p(r) * q(r) * (1.0 - q(r)))
