@@ -150,6 +150,13 @@ fn monte_carlo_costs(spec: &Sweep, cost: &MonteCarloCost) -> Vec<String> {
         costs.push(format!(
             "passages: {passages} a point, {paths} paths{seconds} each"
         ));
+        let asked = spec.problem.family().questions.passages.iter();
+        let transitions = asked.filter(|one| one.transitions.is_some()).count();
+        if transitions > 0 {
+            costs.push(format!(
+                "transitions: of {transitions} passages a point, until {paths} are counted{seconds} each"
+            ));
+        }
     }
     costs
 }

@@ -29,6 +29,8 @@ pub(super) enum Purpose {
     PassageStart = 8,
     Chance = 9,
     Tangent = 10,
+    Transition = 11,
+    Meeting = 12,
 }
 
 /// Key of one batch's stream.

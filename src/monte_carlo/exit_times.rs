@@ -160,12 +160,12 @@ impl ExitTimes {
     }
 }
 
-fn differences(one: &[f64], other: &[f64]) -> Vec<f64> {
+pub(super) fn differences(one: &[f64], other: &[f64]) -> Vec<f64> {
     one.iter().zip(other).map(|(a, b)| a - b).collect()
 }
 
 /// Standard error of a number by its values without one block each.
-fn jackknife(without: &[Vec<f64>], index: usize) -> f64 {
+pub(super) fn jackknife(without: &[Vec<f64>], index: usize) -> f64 {
     let values = || without.iter().map(|numbers| numbers[index]);
     let count = without.len() as f64;
     let mean = values().sum::<f64>() / count;

@@ -2,6 +2,7 @@
 //!
 //! [`relaxation()`] measures how long a system remembers; [`ergodic()`] averages a fixed number of long trajectories
 //! over time, [`ensemble()`] counts many at one time; [`first_passages`] follows paths until they enter a region;
+//! [`transitions()`] counts how often long ones go from one region to another;
 //! [`sample_path`] follows a single one, to be looked at; `exponent_along_trajectories` finds
 //! how fast neighbouring ones run apart; `step_bias` finds what a time step does to the density.
 //!
@@ -13,6 +14,7 @@
 mod advances;
 mod autocorrelation;
 mod batch;
+mod crossings;
 mod ensemble;
 mod ergodic;
 mod estimate;
@@ -25,6 +27,7 @@ mod relaxation;
 mod tangent;
 #[cfg(test)]
 mod tests;
+mod transitions;
 mod turning;
 mod walk;
 
@@ -40,6 +43,7 @@ pub use path::{PathRun, SamplePath, sample_path};
 pub use phases::Periodic;
 pub use relaxation::{Relaxation, relaxation};
 pub(crate) use tangent::{TangentRun, exponent_along_trajectories};
+pub use transitions::{TransitionRun, Transitions, transitions};
 pub use walk::PassageTarget;
 
 use crate::space::CellSpace;

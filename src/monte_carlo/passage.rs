@@ -146,7 +146,8 @@ impl Paths<'_> {
                 }
                 if next < count {
                     paths[lane] = Some(next);
-                    chances[lane] = Chance::new(run.seed, number * count + next);
+                    let path = (number * count + next) as u64;
+                    chances[lane] = Chance::new(run.seed, Purpose::Chance, path);
                     let state = &starts[next % starts.len()];
                     walks.iter_mut().for_each(|walk| walk.start(lane, state));
                     next += 1;

@@ -91,15 +91,15 @@ impl<'a> Border<'a> {
 #[derive(Clone, Copy, Default)]
 pub(super) struct Chance {
     /// The path ends when the probability that it has not been inside falls below this.
-    unmet: f64,
+    pub(super) unmet: f64,
     /// Square of a standard normal, and a uniform number: when within a step it ends.
     square: f64,
     uniform: f64,
 }
 
 impl Chance {
-    pub(super) fn new(seed: u64, path: usize) -> Self {
-        let word = key(seed, Purpose::Chance, path as u64).word();
+    pub(super) fn new(seed: u64, purpose: Purpose, path: u64) -> Self {
+        let word = key(seed, purpose, path).word();
         let [unmet, radius, angle, uniform] = [1, 2, 3, 4].map(|n| unit(mix(word.wrapping_add(n))));
         let cosine = (std::f64::consts::TAU * angle).cos();
         Self {
@@ -113,7 +113,7 @@ impl Chance {
     /// b/a, `spread` its variance over the step as a share of a²; without any it moves evenly. The odds of that share
     /// have an inverse Gaussian distribution, drawn as by J. R. Michael, W. R. Schucany and R. W. Haas, The American
     /// Statistician 30, 1976.
-    fn crossing(&self, ratio: f64, spread: f64) -> f64 {
+    pub(super) fn crossing(&self, ratio: f64, spread: f64) -> f64 {
         let square = spread * self.square;
         let least = 2.0 / (2.0 * ratio + square + (square * (square + 4.0 * ratio)).sqrt());
         let is_least = self.uniform * (1.0 + ratio * least) <= 1.0;

@@ -52,6 +52,7 @@
 //! | numbers as fields over the start | `field.rs` |
 //! | the same beside a border | `rim.rs` |
 //! | processes on their way from one region to another | `reactive.rs` |
+//! | how they come into the cells | `source.rs` |
 //! | their density and current on a grid | `on_way.rs`, `current.rs` |
 //! | the steady state between nodes | `steady.rs` |
 
@@ -67,6 +68,7 @@ mod rate;
 mod reactive;
 mod rim;
 mod solve;
+mod source;
 mod spread;
 mod start;
 mod steady;
@@ -77,6 +79,7 @@ mod timed;
 pub use density_start::KnownDensity;
 pub use field::{FieldTarget, PassageField, field};
 pub(crate) use memory::PassageMemory;
+pub(crate) use reactive::are_apart;
 pub use reactive::{Reactive, reactive};
 pub(crate) use timed::timed_from;
 pub use timed::{Timed, WithError, timed};

@@ -10,13 +10,14 @@
 
 use std::sync::Arc;
 
-use super::cells::{PassageCells, cells};
+use super::cells::cells;
 use super::exits::Exits;
 use super::field::{
     FieldTarget, OnGrid, PassageField, TOLERANCE, greatest_beside, on_three_grids, with_changes,
 };
 use super::on_way::{Asked, Changed, FROM, Found, OnWay, TO};
 use super::solve::enclosed;
+use super::source::{change_of_duration, source};
 use super::steady::{Steady, mass_in};
 use super::timed::WithError;
 use super::{KnownDensity, PassageError, dot};
@@ -102,7 +103,10 @@ pub fn reactive(
 }
 
 /// Nothing, if both regions have cells, and none in common.
-fn are_apart(space: &CellSpace, [from, to]: [&BoundQuantity; 2]) -> Result<(), PassageError> {
+pub(crate) fn are_apart(
+    space: &CellSpace,
+    [from, to]: [&BoundQuantity; 2],
+) -> Result<(), PassageError> {
     let [from, to] = [levels(space, from)?, levels(space, to)?];
     let is_in = |level: &f64| *level < 0.0;
     if !to.iter().any(is_in) {
@@ -152,8 +156,9 @@ impl Transitions<'_> {
         ];
         let [full, half, third] = &generators;
         let exits = Exits::new(&self.asked.target.exits, &found.space);
+        let system = self.asked.system.as_ref();
         let source = |generator: &AbsorbingGenerator, steady: &Steady<'_>| {
-            self.source((&found, generator), &exits, steady)
+            source((system, &exits), (&found, generator), steady)
         };
         let start = source(full, &self.steady);
         let is_left = start.iter().any(|&rate| rate > 0.0) && start.iter().sum::<f64>() > 0.0;
@@ -171,7 +176,8 @@ impl Transitions<'_> {
             }
             left
         };
-        let steady = match self.changes.as_ref().filter(|_| factor == 1.0) {
+        let steady_changes = self.changes.as_ref().filter(|_| factor == 1.0);
+        let steady = match steady_changes {
             Some(changes) => solver.times(&stage, &source(full, changes))?,
             None => vec![0.0; own.len()],
         };
@@ -185,59 +191,28 @@ impl Transitions<'_> {
         let (next, changes) = with_changes(&mut solver, &stage, [full, half, third], gain)?;
         let entering = [full, half, third].map(gain);
         let numbers = self.flux((&stage, &start), &entering, &last, &next);
+        let to_come = next.values();
         let on_way = OnWay::new(&self.asked, &found, full, (last, next, changes));
-        let numbers = self.numbers(numbers, &on_way, full, &exits);
+        let mut numbers = self.numbers(numbers, &on_way, full, &exits);
+        if let Some(changes) = steady_changes {
+            // Transitions that begin at a place on the border, and the time that they are on their way.
+            let weights = full.weights[0].iter().zip(&on_way.next.own);
+            let weights: Vec<f64> = weights.map(|(weight, next)| weight * next).collect();
+            let lasting = solver.expected(&stage, &weights)?.values();
+            let value = |place: usize| numbers.on_grid.values[place].unwrap_or(f64::NAN);
+            let flux_and_duration = (value(0), value(2));
+            numbers.changes[2] = change_of_duration(
+                (system, &exits),
+                (&found, full),
+                changes,
+                [&to_come, &lasting],
+                flux_and_duration,
+            );
+        }
         Ok(GridTransitions {
             numbers,
             fields: on_way.fields(&self.asked),
         })
-    }
-
-    /// Rates at which processes that were in the first region last come into the cells, of a steady state.
-    fn source(
-        &self,
-        (found, generator): (&PassageCells, &AbsorbingGenerator),
-        exits: &Exits<'_>,
-        steady: &Steady<'_>,
-    ) -> Vec<f64> {
-        let (space, dimension) = (&found.space, found.space.dimension());
-        let mut source = vec![0.0; space.n_cells()];
-        for border in &generator.on_border {
-            let state = &border.state[..dimension];
-            if exits.part_at(state) == Some(FROM) {
-                let value = steady.at(state);
-                let rates = border.rates.iter();
-                rates.for_each(|&(cell, rate)| source[cell] += rate * value);
-            }
-        }
-        // What the drift carries in through ends of the cells that are borders.
-        for (index, axis) in space.axes().iter().enumerate() {
-            let ends = [(0, axis.from(), 1.0), (axis.count() - 1, axis.to(), -1.0)];
-            for ((last, end, inward), _) in ends
-                .into_iter()
-                .zip(found.borders[index])
-                .filter(|one| one.1)
-            {
-                for cell in (0..space.n_cells()).filter(|&cell| space.position(cell, index) == last)
-                {
-                    let mut state = space.node(cell);
-                    state[index] = end;
-                    let drift = inward * self.asked.system.drift_at(0.0, &state)[index];
-                    if drift > 0.0 && generator.kept[cell] && exits.part_at(&state) == Some(FROM) {
-                        let others = space
-                            .axes()
-                            .iter()
-                            .enumerate()
-                            .filter(|(other, _)| *other != index);
-                        let width: f64 = others
-                            .map(|(other, axis)| axis.node_stretch(space.position(cell, other)))
-                            .product();
-                        source[cell] += drift * width * steady.at(&state);
-                    }
-                }
-            }
-        }
-        source
     }
 
     /// Transitions per unit of time. What solves of either side leave is in it to second order.

@@ -291,7 +291,7 @@ fn passage_in_words(family: &Family, passage: usize, fault: PassageFault) -> Str
             "its equations were not solved: use more cells, or give it more memory (`method.memory_limit`)"
         }
         PassageFault::Rare => {
-            "hardly a path entered the region that is waited for: give them more time (`method.longest_passage`), or ask the generator"
+            "hardly a path entered the region that is waited for, or came there from the one to start in: give them more time (`method.longest_passage`), or ask the generator"
         }
         PassageFault::RunsAway => {
             "paths run away without entering the region that is waited for, so that it has no mean time"

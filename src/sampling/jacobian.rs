@@ -26,7 +26,8 @@ pub(super) struct LocalRates {
     pub(super) split: f64,
 }
 
-/// Length of a step that moves positions apart over that of Heun's, where nothing but the motion of positions limits it.
+/// Length of a step that moves positions apart over that of Heun's, where nothing but the motion of positions limits
+/// it.
 const LONGER: f64 = 2.0;
 
 /// Rates at a state in Ω; `None` next to a switching surface, outside Ω, and where the drift is not finite.

@@ -552,3 +552,42 @@ fn transitions_come_to_tables_and_figures_and_regions_in_common_are_told() {
         assert_eq!(&row["cross_transition_flux"], "");
     }
 }
+
+#[test]
+fn transitions_counted_on_trajectories_stand_beside_those_of_the_generator() {
+    let room = Room::new();
+    let fields = "fields = [\"reactive-density\", \"reactive-current\"]";
+    let few = "error = 0.1\npassages = 1024\n[figures]\nat = [0.1]";
+    let text = TRANSITIONS.replace(fields, "transitions = \"on\"");
+    let text = text.replace("sqrt(0.2)", "sqrt(0.6)");
+    let by = |kind: &str| text.replace("[figures]", &format!("[method]\nkind = \"{kind}\"\n{few}"));
+    room.write("a.toml", by("generator"));
+    room.write("b.toml", by("monte-carlo"));
+    let told = "transitions: of 1 passages a point, until 1024 are counted";
+    assert_says(&room.done("check b.toml").out, &[told]);
+    room.done("compare a.toml --out c");
+    let table = room.table("c/measures.csv").0;
+    let names = ["flux", "rate", "time"].map(|name| format!("cross_transition_{name}"));
+    for name in &names {
+        let row = table.iter().find(|row| &row["measure"] == name.as_str());
+        let row = row.unwrap_or_else(|| panic!("no {name}"));
+        let [value, error, apart] =
+            row.numbers(["monte_carlo", "monte_carlo_error", "errors_apart"]);
+        println!("{name}: {value} ± {error}, {apart} errors apart");
+        assert!(
+            apart.abs() < 4.0 && error < 0.1 * value,
+            "{name}: {value} ± {error}"
+        );
+    }
+    let last = "figures.draw=[] method.passages=64 method.longest_passage=0.2";
+    for (to, code) in [
+        ("x > 2.6", "passage-rare"),
+        ("x > -0.8 and x < 0.1", "passage-overlap"),
+    ] {
+        room.write("d.toml", by("monte-carlo").replace("x > 0.5", to));
+        room.solved(&format!("sweep d.toml --out {code} {last}"));
+        let row = &room.table(&format!("{code}/points.csv")).0[0];
+        assert!(row["findings"].contains(code), "{}", &row["findings"]);
+        assert_eq!(&row["cross_transition_flux"], "");
+    }
+}

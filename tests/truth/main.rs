@@ -19,6 +19,7 @@ mod passage_starts;
 mod passages;
 mod random_systems;
 mod sampled_passages;
+mod sampled_transitions;
 mod slow_modes;
 mod spectra;
 mod transitions;

@@ -18,13 +18,13 @@ use crate::common::numbers::{Numbers, given};
 use crate::common::steady::{even_cells, model, solve};
 
 /// Transitions on cells.
-struct Found {
+pub(crate) struct Found {
     space: CellSpace,
-    reactive: Reactive,
+    pub(crate) reactive: Reactive,
 }
 
 /// Transitions from where the first inequality holds to where the second does.
-fn found(model: &Arc<Model>, parts: [&str; 2], axes: &[(f64, f64, usize)]) -> Found {
+pub(crate) fn found(model: &Arc<Model>, parts: [&str; 2], axes: &[(f64, f64, usize)]) -> Found {
     let values = model.values(&[]).unwrap();
     let bound = |text: &str| -> BoundQuantity {
         let region = regions(model, &[("until", text)]).unwrap().remove(0);
@@ -135,19 +135,31 @@ fn stated_errors_of_transitions_hold_in_random_wells() {
     println!("largest share of a stated error: {largest:.2}");
 }
 
-/// Shares of stated errors that flux, rate, duration, density and current of a well are off by, and its flux.
-fn well((tilt, d, a, b, cells): (f64, f64, f64, f64, usize)) -> ([f64; 5], (f64, f64)) {
-    let (drift, noise) = (format!("x - x^3 - {tilt:?}"), format!("sqrt(2*{d})"));
-    let well = model(&[("x", &drift)], &[("x", &noise)]);
-    let parts = [format!("x < {a:?}"), format!("x > {b:?}")];
-    let u = |x: f64| (x.powi(4) / 4.0 - x * x / 2.0 + tilt * x) / d;
-    // Nothing of the steady state is beyond.
+/// U/D of a well.
+fn potential(tilt: f64, d: f64) -> impl Fn(f64) -> f64 {
+    move |x| (x.powi(4) / 4.0 - x * x / 2.0 + tilt * x) / d
+}
+
+/// Where nothing of the steady state of a well is beyond.
+pub(crate) fn end_of_well(tilt: f64, d: f64) -> f64 {
+    let u = potential(tilt, d);
     let is_empty = |x: &f64| u(*x).min(u(-*x)) > 34.0;
-    let end = (40..)
-        .map(|step| 0.05 * f64::from(step))
-        .find(is_empty)
-        .unwrap();
-    let Found { space, reactive } = found(&well, [&parts[0], &parts[1]], &[(-end, end, cells)]);
+    let mut steps = (40..).map(|step| 0.05 * f64::from(step));
+    steps.find(is_empty).unwrap()
+}
+
+/// Transitions of x' = x - x³ - tilt + √(2D) ξ from below a to above b.
+pub(crate) struct Exact {
+    /// Flux, rate and duration.
+    pub(crate) numbers: [f64; 3],
+    /// The norm of exp(-U/D), and the committor at even steps from a to b.
+    z: f64,
+    committor: Vec<f64>,
+}
+
+/// The same by quadrature.
+pub(crate) fn exact_well((tilt, d, a, b): (f64, f64, f64, f64)) -> Exact {
+    let (u, end) = (potential(tilt, d), end_of_well(tilt, d));
     let over = |from: f64, to: f64, f: &dyn Fn(f64) -> f64| -> f64 {
         let h = (to - from) / STEPS as f64;
         (0..STEPS).map(|k| h * f(from + (k as f64 + 0.5) * h)).sum()
@@ -169,17 +181,39 @@ fn well((tilt, d, a, b, cells): (f64, f64, f64, f64, usize)) -> ([f64; 5], (f64,
         committor[k + 1] = q;
     }
     let inside = over(-end, a, &|x| (-u(x)).exp()) / z;
-    let at = |x: f64| between_steps(&committor, (x - a) / h);
+    Exact {
+        numbers: [flux, flux / (inside + outside), way / flux],
+        z,
+        committor,
+    }
+}
+
+/// A well and its two regions.
+pub(crate) fn model_of_well((tilt, d, a, b): (f64, f64, f64, f64)) -> (Arc<Model>, [String; 2]) {
+    let (drift, noise) = (format!("x - x^3 - {tilt:?}"), format!("sqrt(2*{d})"));
+    let well = model(&[("x", &drift)], &[("x", &noise)]);
+    (well, [format!("x < {a:?}"), format!("x > {b:?}")])
+}
+
+/// Shares of stated errors that flux, rate, duration, density and current of a well are off by, and its flux.
+fn well((tilt, d, a, b, cells): (f64, f64, f64, f64, usize)) -> ([f64; 5], (f64, f64)) {
+    let (well, parts) = model_of_well((tilt, d, a, b));
+    let end = end_of_well(tilt, d);
+    let Found { space, reactive } = found(&well, [&parts[0], &parts[1]], &[(-end, end, cells)]);
+    let exact = exact_well((tilt, d, a, b));
+    let [flux, rate, duration] = exact.numbers;
+    let u = potential(tilt, d);
+    let at = |x: f64| between_steps(&exact.committor, (x - a) / (b - a) * STEPS as f64);
     let between = |state: &[f64]| (a < state[0] && state[0] < b).then_some(state[0]);
     let name = format!("D = {d}, {cells}");
     let shares = [
         holds(&format!("flux, {name}"), reactive.flux, flux),
-        holds("rate", reactive.rate, flux / (inside + outside)),
-        holds("duration", reactive.duration, way / flux),
+        holds("rate", reactive.rate, rate),
+        holds("duration", reactive.duration, duration),
         off(&space, &reactive.density, "density", |state| {
             let x = between(state)?;
             let q = at(x);
-            Some((-u(x)).exp() / z * q * (1.0 - q))
+            Some((-u(x)).exp() / exact.z * q * (1.0 - q))
         }),
         off(&space, &reactive.current[0], "current", |state| {
             between(state).map(|_| flux)
@@ -210,6 +244,11 @@ fn transitions_between_circles_go_round_with_a_rotation() {
     let p = |r: f64| (-r * r / (2.0 * d)).exp() / (2.0 * std::f64::consts::PI * d);
     // 2πr D p q'.
     let flux = 1.0 / whole;
+    let way = (0..n).map(|k| {
+        let r = 0.4 + (k as f64 + 0.5) * h;
+        2.0 * std::f64::consts::PI * r * h * p(r) * q(r) * (1.0 - q(r))
+    });
+    let duration = way.sum::<f64>() / flux;
     for cells in [40, 60, 100, 160] {
         let axis = (-3.6, 3.6, cells);
         let Found { space, reactive } = found(&plane, parts, &[axis, axis]);
@@ -231,6 +270,7 @@ fn transitions_between_circles_go_round_with_a_rotation() {
         };
         let shares = [
             holds(&format!("flux, {cells}"), reactive.flux, flux),
+            holds("duration", reactive.duration, duration),
             off(&space, &reactive.density, "density", |state| {
                 let (r, ..) = polar(state)?;
                 Some(p(r) * q(r) * (1.0 - q(r)))

@@ -6,6 +6,7 @@ mod options;
 mod passages;
 mod plan;
 mod source;
+mod transitions;
 #[cfg(test)]
 mod turns_tests;
 

@@ -3,7 +3,7 @@
 use super::{MonteCarloOptions, MonteCarloPlan};
 use crate::cancellation::Cancellation;
 use crate::continuation::{Finding, PassageFault, SolveReport};
-use crate::method::measures::measures_of_passage;
+use crate::method::measures::{measures_of_passage, transition_measures};
 use crate::method::{MethodError, Problem, StepChoice};
 use crate::monte_carlo::{
     ExitNumber, ExitTimes, MonteCarloError, PassageRun, PassageStart, PassageTarget, SteadyStart,
@@ -12,8 +12,8 @@ use crate::monte_carlo::{
 use crate::passage::{Passage, Start};
 use crate::system::System;
 
-/// Exits from which numbers are made, at least.
-const FEWEST: usize = 10;
+/// Exits, or transitions, from which numbers are made, at least.
+pub(super) const FEWEST: usize = 10;
 
 /// Autocorrelation times between two looks in search of states to start from.
 const SPACING: f64 = 3.0;
@@ -46,6 +46,7 @@ impl Setting<'_> {
         let values = family.values_at(value)?;
         for (passage, question) in family.questions.passages.iter().enumerate() {
             let asked = Passage::bind(question, &values)?;
+            let mut faults = Vec::new();
             let found = self.follow(system, &asked, is_steady, cancellation)?;
             match found {
                 Ok((times, numbers)) => {
@@ -60,8 +61,22 @@ impl Setting<'_> {
                         });
                     }
                 }
-                Err(fault) => report.findings.push(Finding::NoPassage { passage, fault }),
+                Err(fault) => faults.push(fault),
             }
+            if question.transitions.is_some() {
+                match self.transitions(system, &asked, is_steady, cancellation)? {
+                    Ok(numbers) => {
+                        let numbers = numbers.map(|one| (one.value, one.error()));
+                        let measures = transition_measures(question, numbers);
+                        report.measures.extend(measures);
+                    }
+                    Err(fault) => faults.push(fault),
+                }
+            }
+            faults.dedup();
+            let findings = faults.into_iter();
+            let findings = findings.map(|fault| Finding::NoPassage { passage, fault });
+            report.findings.extend(findings);
         }
         Ok(())
     }

@@ -88,7 +88,7 @@ pub(super) fn fields(
                 add(array("committor"), (both, &[from, until]), Some(1));
             }
             (FieldKind::ReactiveDensity | FieldKind::ReactiveCurrent, from) => {
-                let both = transitions(reader, (draft, passage), given, (until, from))?;
+                let both = transitions(reader, passage, given, (until, from))?;
                 let exits = from.map_or_else(Vec::new, |from| vec![from, until]);
                 let mut add = |name, axis| {
                     all.push(GivenField {
@@ -123,23 +123,16 @@ pub(super) fn fields(
     Some(all)
 }
 
-/// Either of the regions between which a passage has transitions: by the generator, from one inequality to another;
-/// `None` where they cannot be asked for.
+/// Either of the regions between which a passage has transitions, from one inequality to another; `None` where they
+/// cannot be asked for.
 pub(super) fn transitions(
     reader: &mut Reader<'_>,
-    (draft, passage): (&Draft, &PassageDraft),
+    passage: &PassageDraft,
     given: &mut Vec<Given>,
     (until, from): (usize, Option<usize>),
 ) -> Option<usize> {
     let name = passage.name.as_str();
     let (title, remedy) = match from {
-        _ if draft.method.kind != MethodKind::Generator => (
-            format!(
-                "transitions between regions are worked out by `generator`, not by `{}`",
-                draft.method.kind.name()
-            ),
-            "set `method.kind = \"generator\"`, or leave `transitions` and reactive fields out",
-        ),
         Some(from) if passage.exits.is_none() => {
             if !is_basin(&given[from].text) && !is_basin(&given[until].text) {
                 return Some(either(reader, given, name, [from, until]));

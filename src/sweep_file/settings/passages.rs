@@ -262,7 +262,7 @@ fn ends(
     let fields = fields(reader, of, given, (until, &exits, from))?;
     let asked = passage.transitions == Some(true);
     let transitions = match asked || fields.iter().any(GivenField::is_reactive) {
-        true => Some(transitions(reader, (draft, passage), given, (until, from))?),
+        true => Some(transitions(reader, passage, given, (until, from))?),
         false => None,
     };
     Some(Ends {

@@ -57,7 +57,7 @@ fn rates_between_two_states_are_of_two_regions_by_the_generator() {
 }
 
 #[test]
-fn transitions_are_between_two_regions_by_the_generator_and_reactive_fields_have_their_numbers() {
+fn transitions_are_between_two_regions_and_reactive_fields_have_their_numbers() {
     let passage = |more: &str| {
         let ends = "from = \"x < 1\", to = \"x > 8\"";
         format!("{WALLED}[passage]\nout = {{ {ends}, {more} }}\n")
@@ -94,12 +94,12 @@ fn transitions_are_between_two_regions_by_the_generator_and_reactive_fields_have
     assert_eq!(of(&passage("fields = [\"committor\"]")).0, None);
     let refused = |text: &str, sets: &[&str]| parse(text, sets).unwrap_err().to_string();
     let asked = passage("transitions = \"on\"");
-    for text in [&asked, &fields] {
-        let sampled = refused(text, &["method.kind=monte-carlo"]);
-        assert!(
-            sampled.contains("by `generator`, not by `monte-carlo`"),
-            "{sampled}"
-        );
+    let sampled = parse(&asked, &["method.kind=monte-carlo"]).unwrap();
+    assert!(sampled.family.questions.passages[0].transitions.is_some());
+    for (text, method) in [(&fields, "monte-carlo"), (&asked, "sgcm")] {
+        let refused = refused(text, &[&format!("method.kind={method}")]);
+        assert!(refused.contains("by `generator`"), "{refused}");
+        assert!(refused.contains(&format!("not by `{method}`")), "{refused}");
     }
     let state = refused(
         &asked.replace("from = \"x < 1\"", "start = { x = 1, v = 0 }"),
