@@ -7,7 +7,7 @@ mod passages;
 mod plan;
 mod source;
 #[cfg(test)]
-mod turns_tests;
+pub(in crate::method) mod turns_tests;
 
 pub(crate) use cost::MonteCarloCost;
 pub use options::{Estimator, MonteCarloOptions};

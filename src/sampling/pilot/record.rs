@@ -128,6 +128,7 @@ impl Record {
             frequency: frequency.max(SLOWER_THAN_SPREAD * crossing),
             damping,
             cells: self.cells,
+            phase: None,
         }
     }
 }
