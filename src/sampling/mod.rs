@@ -15,8 +15,8 @@
 //! the steady state lives on the closed one, or, with escape, on the one that keeps its mass longest. Several are
 //! reported, not averaged.
 //!
-//! **The phase of a forcing jumps from cell to cell.** Trajectories start at the very phase for which a cell stands and
-//! end at another such phase: nothing spreads along it (`phase.rs`). The chain is periodic; its solvers know.
+//! **A phase passes whole cells.** Trajectories of a forced system start at the very phase for which a cell stands, and
+//! end at another such phase: nothing spreads along it (`phase.rs`). The chain goes round for ever; its solvers know.
 //!
 //! **Laws, not paths.** A map needs where trajectories end, as a law. Increments with the first five moments of normal
 //! ones give it to the same weak order, from four random bits a step. Whatever compares paths (halving a step,

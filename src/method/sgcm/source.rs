@@ -5,16 +5,16 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::phases::{amplitudes, moments_at_phases, on_phases, with_axis};
+use super::phases::{amplitudes, on_phases, with_axis};
 use super::slope_correction::{Corrected, solve_by};
 use super::steps::{Steps, choose_steps};
-use super::widening::widened;
+use super::widening::all_moments;
 use super::{Correction, SgcmOptions};
 use crate::MAX_DIMENSION;
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::continuation::measure::{ESCAPE_RATE, MAP_STEP, TIME_STEP_BIAS};
 use crate::continuation::{Finding, Solution, Subject};
-use crate::density::{EstimatedDensity, excess_variances, moments};
+use crate::density::{EstimatedDensity, moments};
 use crate::method::forcing::part_of_period;
 use crate::method::measures::{Cells, Others};
 use crate::method::problem::Maps;
@@ -266,16 +266,18 @@ impl SgcmSource {
         let densities = self.densities(point, &steady, &replicates)?;
         let space = self.problem.space();
         let maps = self.maps(point.value)?;
-        let sampled = maps.all_sampled_moments(space, &of_axes, &steady.mass, &replicates)?;
-        let excess = excess_variances(space, &steady.mass)?;
-        let mut known = widened(sampled, &excess, widening);
-        for (one, axis) in moments_at_phases(&self.problem, &steady.mass, &replicates)? {
-            known.extend(widened(vec![one], &excess[axis..], widening));
-        }
-        reporter.moments(&known);
+        let masses = (steady.mass.as_slice(), replicates.as_slice());
+        reporter.moments(&all_moments(
+            &self.problem,
+            &maps,
+            &of_axes,
+            masses,
+            widening,
+        )?);
         let system = point.system.as_ref();
         let share = widening.abs() + bias.map_or(0.0, StepBias::certain);
-        let answers = amplitudes(&self.problem, system, &steady.mass, &replicates, share);
+        let doubts = (share, reporter.missing());
+        let answers = amplitudes(&self.problem, system, masses, doubts);
         reporter.report.measures.extend(answers);
         reporter.replicates(replicates.len(), transitions.groups());
         let solution = reporter.solution(
