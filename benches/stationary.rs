@@ -32,6 +32,7 @@ fn chain(count: usize) -> (TransitionMatrix, CellSpace) {
         matrix,
         escape,
         map_step: 1.0,
+        phase: None,
     };
     (matrix, space)
 }
@@ -58,12 +59,12 @@ fn benchmark(criterion: &mut Criterion) {
         if let Some(steady) = steady {
             eprintln!(
                 "{:?}",
-                second_eigenvalue(&matrix, &steady, &Cancellation::new())
+                second_eigenvalue(&matrix, &space, &steady, &Cancellation::new())
             );
             let options = Options::new(Solver::MultilevelAggregation, 1e-12);
             let warm = || solve(&matrix, &space, Some(&steady.mass), &options);
             group.bench_function("warm", |bencher| bencher.iter(warm));
-            let second = || second_eigenvalue(&matrix, &steady, &Cancellation::new());
+            let second = || second_eigenvalue(&matrix, &space, &steady, &Cancellation::new());
             group.bench_function("second eigenvalue", |bencher| bencher.iter(second));
         }
         group.finish();

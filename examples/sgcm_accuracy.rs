@@ -299,7 +299,8 @@ fn integrators(system: &dyn System) -> Result<(), AnyError> {
                 let spread = moments[1].standard_deviation;
                 let rate = -(-steady.info.escape_per_step).ln_1p() / run.matrix.map_step;
                 let relaxation =
-                    second_eigenvalue(&run.matrix, steady, &Cancellation::new())?.relaxation_time;
+                    second_eigenvalue(&run.matrix, &trial.space, steady, &Cancellation::new())?;
+                let relaxation = relaxation.relaxation_time;
                 let share = 100.0 * rate * relaxation.unwrap_or(f64::INFINITY);
                 println!(
                     "{:.3} | {spread:.3} | {share:.2} % |",

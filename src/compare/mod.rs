@@ -77,7 +77,7 @@ pub struct Pair {
 pub struct ComparedValue {
     /// The value.
     pub value: f64,
-    /// The methods in the order of [`Method::ALL`]; without SGCM where an axis closes on itself.
+    /// The methods in the order of [`Method::ALL`]; without SGCM where there is an angle.
     pub solved: Vec<Solved>,
     /// Every two methods with a density, and every method with the exact density where it is known, a row an
     /// observable.
@@ -222,9 +222,9 @@ pub fn common_cells(space: &CellSpace) -> Result<CellSpace, crate::space::SpaceE
     uniform_cells(space, PAPER_CELLS)
 }
 
-/// Whether SGCM takes part: it maps no cells of angles and phases.
+/// Whether SGCM takes part: it maps no angles.
 pub(crate) fn has_cell_map(problem: &Problem) -> bool {
-    !problem.space().axes().iter().any(Axis::is_closed)
+    problem.family().angles().next().is_none()
 }
 
 /// Cells of equal width over the ranges of `space`: `count` along the first two axes.

@@ -11,8 +11,39 @@ use nalgebra::Complex;
 use crate::continuation::Measure;
 use crate::continuation::measure::{AMPLIFICATION, AMPLITUDE};
 use crate::method::lattice::for_all_nodes;
+use crate::method::{MOST_PHASES, MethodError, Problem};
 use crate::space::CellSpace;
 use crate::system::{Family, System};
+
+/// Distance of a phase from a part of the period that is rounding, in parts.
+const SAME_PHASE: f64 = 1e-9;
+
+/// Even parts of the period among which all phases are that are watched: a multiple of the fewest, and so many at least.
+///
+/// # Errors
+/// [`MethodError::Phases`].
+pub(super) fn parts_of_period(problem: &Problem, least: usize) -> Result<usize, MethodError> {
+    let quantities = problem.family().quantities().iter();
+    let phases: Vec<f64> = quantities
+        .filter_map(|quantity| Some(quantity.phase()?.phase))
+        .collect();
+    let fits = |parts: &usize| {
+        let off = |phase: &f64| {
+            let place = phase * *parts as f64;
+            (place - place.round()).abs()
+        };
+        phases.iter().all(|phase| off(phase) <= SAME_PHASE)
+    };
+    let fewest = (1..=MOST_PHASES).find(fits).ok_or(MethodError::Phases)?;
+    Ok(least.next_multiple_of(fewest))
+}
+
+/// Time in which a forced system passes one cell along its phase; `None` without forcing.
+pub(super) fn part_of_period(system: &dyn System, space: &CellSpace) -> Option<f64> {
+    let axis = system.facts().phase?;
+    let frequency = system.drift_at(0.0, &vec![0.0; system.dimension()])[axis];
+    Some(1.0 / (frequency * space.axes()[axis].count() as f64))
+}
 
 /// Difference between first harmonics of the drift, over the largest, that is rounding.
 const ROUNDING: f64 = 1e-9;

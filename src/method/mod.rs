@@ -59,6 +59,8 @@ pub use monte_carlo::{Estimator, MonteCarloOptions, MonteCarloSource};
 pub use options::MethodOptions;
 pub use problem::Problem;
 pub(crate) use range::{PILOT_BOX, RangeError, automatic_ranges};
+#[cfg(feature = "store")]
+pub(crate) use sgcm::FEWEST_PHASES;
 pub(crate) use sgcm::SgcmCost;
 pub use sgcm::{Corrected, Correction, SgcmOptions, SgcmSource, solve_corrected};
 pub(crate) use sticking::check_sticking;
@@ -93,15 +95,13 @@ pub enum MethodError {
     /// The drift depends on time.
     #[error(transparent)]
     Periodic(#[from] crate::system::PeriodicDrift),
-    /// A cell map, of a system with an axis that closes on itself.
-    #[error(
-        "axis `{axis}` closes on itself: phases and angles are for the generator and Monte Carlo (`method.kind`)"
-    )]
+    /// A cell map, of a system with an angle.
+    #[error("`{axis}` is an angle: angles are for the generator and Monte Carlo (`method.kind`)")]
     Turn {
         /// Name of the axis.
         axis: String,
     },
-    /// Monte Carlo, at phases of a forcing that are not parts of one division of the period.
+    /// Cell maps and Monte Carlo, at phases of a forcing that are not parts of one division of the period.
     #[error(
         "the phases that are watched are no parts of a period divided evenly by at most {MOST_PHASES}, at which trajectories are looked at: give fractions of a common denominator up to there"
     )]
@@ -205,7 +205,7 @@ fn has_densities(problem: &Problem) -> Result<(), MethodError> {
     let asks = !family.questions.passages.is_empty()
         || family.questions.slow_modes > 0
         || family.questions.spectrum.is_some();
-    if let (true, Err(MethodError::Turn { axis })) = (asks, has_no_turns(problem)) {
+    if let (true, Some(axis)) = (asks, turn(problem, true)?) {
         return Err(MethodError::TurnOfQuestion { axis });
     }
     let space = problem.space();
@@ -238,15 +238,16 @@ fn has_densities(problem: &Problem) -> Result<(), MethodError> {
     check_sticking(problem.family(), &ranges)
 }
 
-/// Nothing, if no axis closes on itself: trajectories would leave the turn.
-fn has_no_turns(problem: &Problem) -> Result<(), MethodError> {
+/// Name of an axis that closes on itself, an angle or, where that counts, the phase of a forcing.
+fn turn(problem: &Problem, counts_phase: bool) -> Result<Option<String>, MethodError> {
     for system in problem.family().along()? {
-        if let Some(&axis) = system.facts().turns.keys().next() {
-            let axis = problem.family().axis(axis).to_owned();
-            return Err(MethodError::Turn { axis });
+        let facts = system.facts();
+        let mut turns = facts.turns.keys();
+        if let Some(&axis) = turns.find(|axis| counts_phase || facts.phase != Some(**axis)) {
+            return Ok(Some(problem.family().axis(axis).to_owned()));
         }
     }
-    Ok(())
+    Ok(None)
 }
 
 // Whatever part of a method was asked to stop, the method was.

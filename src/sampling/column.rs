@@ -3,6 +3,7 @@
 use super::SamplingOptions;
 use super::integrator::Stepper;
 use super::lookup::CellLookup;
+use super::phase::PhaseStep;
 use super::random::{NormalStream, StreamKey};
 use super::starts::StartLattice;
 use crate::MAX_DIMENSION;
@@ -94,6 +95,7 @@ pub(super) struct ColumnSampler<'a> {
     stepper: Stepper<'a>,
     lattice: StartLattice,
     lookup: CellLookup,
+    phase: Option<PhaseStep>,
     /// First sample of each group, and the number of samples at the end.
     group_starts: Vec<usize>,
 }
@@ -103,6 +105,7 @@ impl<'a> ColumnSampler<'a> {
         system: &'a dyn System,
         space: &'a CellSpace,
         options: &'a SamplingOptions,
+        phase: Option<PhaseStep>,
         cancellation: &Cancellation,
     ) -> Self {
         let steps = options.steps();
@@ -118,13 +121,17 @@ impl<'a> ColumnSampler<'a> {
         let group_starts: Vec<usize> = (0..=groups).map(start).collect();
         let sizes = group_starts.windows(2).map(|pair| pair[1] - pair[0]);
         let largest = sizes.max().unwrap_or(1);
+        let stepper = Stepper::new(system, options.integrator, time_step, cancellation);
+        // Nothing is spread along the phase, which is the last axis.
+        let spread = space.dimension() - usize::from(phase.is_some());
         Self {
             space,
             options,
             steps,
-            stepper: Stepper::new(system, options.integrator, time_step, cancellation),
-            lattice: StartLattice::new(largest, space.dimension()),
+            stepper: stepper.within_a_turn(),
+            lattice: StartLattice::new(largest, spread),
             lookup: CellLookup::new(space),
+            phase,
             group_starts,
         }
     }
@@ -157,6 +164,10 @@ impl<'a> ColumnSampler<'a> {
             self.stepper
                 .advance(&mut states[..dimension], 0, self.steps, &mut stream)?;
             self.stepper.leave(&mut states[..dimension]);
+            if let Some(phase) = &self.phase {
+                let end = phase.end(self.space.position(cell, phase.axis));
+                phase.put(&mut states[..dimension], self.space, end);
+            }
             self.lookup.find(&states[..dimension], &mut found);
             for (lane, &cell) in found.iter().enumerate().take(count) {
                 let end = self.end(cell, lane, &states[..dimension], &mut spreading);
@@ -202,6 +213,10 @@ impl<'a> ColumnSampler<'a> {
             for (axis, lanes) in states.iter_mut().enumerate() {
                 let edges = &self.space.axes()[axis];
                 let position = self.space.position(cell, axis);
+                if self.phase.is_some_and(|phase| phase.axis == axis) {
+                    lanes[lane] = edges.edges()[position];
+                    continue;
+                }
                 let inside = self.lattice.coordinate(key, sample, axis);
                 lanes[lane] = edges.edges()[position] + edges.width(position) * inside;
                 offsets[axis][lane] = inside - 0.5;
@@ -221,7 +236,9 @@ impl<'a> ColumnSampler<'a> {
         if cell == self.lookup.n_cells() {
             return SINK;
         }
-        for (axis, edges) in self.space.axes().iter().enumerate() {
+        let phase = self.phase.map(|phase| phase.axis);
+        let axes = self.space.axes().iter().enumerate();
+        for (axis, edges) in axes.filter(|(axis, _)| phase != Some(*axis)) {
             let position = self.space.position(cell, axis);
             let off = states[axis][lane] - edges.centre(position);
             let width = edges.width(position);

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::column::{Column, ColumnSampler, SINK};
+use super::phase::PhaseStep;
 use super::{SampledTransitions, SamplingError, SamplingOptions};
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::space::CellSpace;
@@ -35,7 +36,8 @@ pub fn sample_transitions(
     if let Some(&cell) = seeds.iter().find(|&&cell| cell >= n_cells) {
         return Err(SamplingError::Seed { cell, n_cells });
     }
-    let sampler = ColumnSampler::new(system, space, options, cancellation);
+    let phase = PhaseStep::of(system, space, options.map_step)?;
+    let sampler = ColumnSampler::new(system, space, options, phase, cancellation);
     let sample = |&cell: &usize| -> Result<_, Cancelled> { Ok((cell, sampler.column(cell)?)) };
     let mut known = vec![false; n_cells];
     let mut columns: Vec<(usize, Column)> = Vec::new();
@@ -53,7 +55,7 @@ pub fn sample_transitions(
         columns,
         n_cells,
         options,
-        space.dimension(),
+        (space.dimension(), phase.map(|phase| phase.axis)),
     ))
 }
 

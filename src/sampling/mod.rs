@@ -15,6 +15,9 @@
 //! the steady state lives on the closed one, or, with escape, on the one that keeps its mass longest. Several are
 //! reported, not averaged.
 //!
+//! **A phase passes whole cells.** Trajectories of a forced system start at the very phase for which a cell stands, and
+//! end at another such phase: nothing spreads along it (`phase.rs`). The chain goes round for ever; its solvers know.
+//!
 //! **Laws, not paths.** A map needs where trajectories end, as a law. Increments with the first five moments of normal
 //! ones give it to the same weak order, from four random bits a step. Whatever compares paths (halving a step,
 //! passages) has normal increments.
@@ -29,6 +32,7 @@ mod jacobian;
 mod lookup;
 mod normal;
 mod options;
+mod phase;
 mod pilot;
 mod random;
 mod slopes;
@@ -42,7 +46,6 @@ pub(crate) use lookup::CellLookup;
 pub use options::SamplingOptions;
 pub use pilot::{Pilot, pilot};
 pub(crate) use random::{NormalStream, StreamKey, mix, unit};
-pub(crate) use slopes::cell_slopes;
 pub use transition::{SampledTransitions, TransitionMatrix};
 
 /// Why transitions could not be sampled.
@@ -77,6 +80,16 @@ pub enum SamplingError {
     /// The drift depends on time.
     #[error(transparent)]
     Periodic(#[from] crate::system::PeriodicDrift),
+    /// A map step of a forced system that is no whole number of the parts into which cells divide the period.
+    #[error(
+        "the map step {map_step} is no whole number of the parts of the period, {part} each, for which the cells along the phase stand"
+    )]
+    Phase {
+        /// The map step.
+        map_step: f64,
+        /// Time in which the phase passes one cell.
+        part: f64,
+    },
     /// A cell to start from that does not exist.
     #[error("there is no cell {cell} to start from; the cell space has {n_cells}")]
     Seed {

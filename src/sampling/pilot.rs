@@ -74,6 +74,8 @@ pub struct Pilot {
     /// velocity moves): the largest of ω/2, of the rates at which everything else changes where they stand, and of
     /// what noises say. `None` without positions.
     pub split_frequency: Option<f64>,
+    /// The axis that is the phase of a forcing, along which cells spread nothing.
+    pub(crate) phase: Option<usize>,
 }
 
 impl Pilot {
@@ -110,7 +112,8 @@ impl Pilot {
     /// takes longer than a quarter of s²/D.
     pub fn automatic_map_step(&self, time_step: f64, samples: usize) -> f64 {
         let (mut cells, mut noise) = (0.0, 0.0);
-        for (axis, &deviation) in self.standard_deviation.iter().enumerate() {
+        for axis in self.spread_axes() {
+            let deviation = self.standard_deviation[axis];
             let square = self.mean_square_width[axis];
             // A spread below a cell is not resolved: the cell's own variance stands in.
             let variance = (deviation * deviation).max(square / 12.0);
@@ -128,13 +131,18 @@ impl Pilot {
 }
 
 impl Pilot {
+    /// All axes but the phase of a forcing.
+    fn spread_axes(&self) -> impl Iterator<Item = usize> {
+        (0..self.standard_deviation.len()).filter(|&axis| self.phase != Some(axis))
+    }
+
     /// The shortest map step in which the samples tell the drift along every noisy axis.
     fn map_step_for_samples(&self, samples: usize) -> f64 {
         let cells_of = |axis: usize| {
             let width = self.mean_square_width[axis].sqrt();
             (4.0 * self.standard_deviation[axis] / width).max(1.0)
         };
-        let all: f64 = (0..self.noise_intensity.len()).map(cells_of).product();
+        let all: f64 = self.spread_axes().map(cells_of).product();
         let step = |axis: usize| {
             let (spread, noise) = (self.standard_deviation[axis], self.noise_intensity[axis]);
             let width = self.mean_square_width[axis].sqrt();
@@ -142,7 +150,8 @@ impl Pilot {
             let wanted = 2.0 * width * spread / (noise * across * DRIFT_NOISE * DRIFT_NOISE);
             wanted.min(CROSSING_SHARE * spread * spread / noise)
         };
-        let axes = (0..self.noise_intensity.len()).filter(|&axis| self.noise_intensity[axis] > 0.0);
+        let noisy = |axis: &usize| self.noise_intensity[*axis] > 0.0;
+        let axes = self.spread_axes().filter(noisy);
         axes.map(step).fold(0.0, f64::max)
     }
 }
@@ -225,9 +234,16 @@ pub fn pilot(
         let outside = record.outside.clone();
         let empty = Record::new(space, &positions);
         let seen = nothing_stays(system, space, seed, (scouted, 2 * steps), empty);
-        return Ok(Pilot { outside, ..seen });
+        return Ok(Pilot {
+            outside,
+            phase: system.facts().phase,
+            ..seen
+        });
     }
-    Ok(record.finish(2 * steps))
+    Ok(Pilot {
+        phase: system.facts().phase,
+        ..record.finish(2 * steps)
+    })
 }
 
 /// The rate at which noise takes a state across a fair part of the range of an axis, the largest of all. It is slower

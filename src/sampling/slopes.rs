@@ -11,11 +11,12 @@ const STEEPEST: f64 = 1.9;
 ///
 /// Slopes are differences over both neighbours, which errs by O(h²); at an end of the range over the one that is there.
 /// Where the density would fall below zero in a corner the slopes are shortened together. `mass` has one value a cell
-/// of the space. An empty cell is flat.
-pub(crate) fn cell_slopes(
+/// of the space. An empty cell is flat, and so is every cell along the phase of a forcing.
+pub(super) fn cell_slopes(
     space: &CellSpace,
     cells: &[usize],
     mass: &[f64],
+    phase: Option<usize>,
 ) -> Vec<[f64; MAX_DIMENSION]> {
     let dimension = space.dimension();
     let mut strides = vec![1; dimension];
@@ -25,7 +26,8 @@ pub(crate) fn cell_slopes(
     let of_cell = |&cell: &usize| {
         let mut slopes = [0.0; MAX_DIMENSION];
         if mass[cell] > 0.0 {
-            for (axis, &stride) in strides.iter().enumerate() {
+            let axes = strides.iter().enumerate();
+            for (axis, &stride) in axes.filter(|(axis, _)| phase != Some(*axis)) {
                 slopes[axis] = slope(space, cell, axis, stride, mass);
             }
         }
@@ -73,7 +75,7 @@ mod tests {
             .map(|cell| density(&space.centre(cell)) * space.volume(cell))
             .collect();
         let cells: Vec<usize> = (0..space.n_cells()).collect();
-        for (&cell, slopes) in cells.iter().zip(cell_slopes(&space, &cells, &mass)) {
+        for (&cell, slopes) in cells.iter().zip(cell_slopes(&space, &cells, &mass, None)) {
             let middle = density(&space.centre(cell));
             let width = |axis: usize| space.axes()[axis].width(space.position(cell, axis));
             assert!((slopes[0] - width(0) / middle).abs() < 1e-12);
@@ -88,7 +90,7 @@ mod tests {
         let mut mass = vec![1.0; 16];
         (mass[5], mass[6], mass[9]) = (1e-6, 1e3, 0.0);
         let cells: Vec<usize> = (0..16).collect();
-        let slopes = cell_slopes(&space, &cells, &mass);
+        let slopes = cell_slopes(&space, &cells, &mass, None);
         for slopes in &slopes {
             let lowest = 1.0 - 0.5 * slopes.iter().map(|s| s.abs()).sum::<f64>();
             assert!(lowest >= 0.05 - 1e-12, "{slopes:?}");

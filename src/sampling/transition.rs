@@ -3,6 +3,7 @@
 use sprs::CsMat;
 
 use super::column::{Column, SINK};
+use super::slopes::cell_slopes;
 use crate::MAX_DIMENSION;
 use crate::space::CellSpace;
 
@@ -19,6 +20,9 @@ pub struct TransitionMatrix {
     pub cells: Vec<usize>,
     /// Time that one application spans.
     pub map_step: f64,
+    /// Axis of the cell space along which every transition passes the same number of cells, the phase of a forcing: the
+    /// chain is periodic.
+    pub phase: Option<usize>,
 }
 
 /// Where the samples of every reachable cell ended, by group.
@@ -31,6 +35,7 @@ pub struct SampledTransitions {
     columns: Vec<Column>,
     groups: usize,
     dimension: usize,
+    phase: Option<usize>,
     map_step: f64,
     time_step: f64,
 }
@@ -42,7 +47,7 @@ impl SampledTransitions {
         columns: Vec<(usize, Column)>,
         n_cells: usize,
         options: &super::SamplingOptions,
-        dimension: usize,
+        (dimension, phase): (usize, Option<usize>),
     ) -> Self {
         let (cells, mut columns): (Vec<usize>, Vec<Column>) = columns.into_iter().unzip();
         let mut position = vec![SINK; n_cells];
@@ -59,6 +64,7 @@ impl SampledTransitions {
             columns,
             groups: options.groups,
             dimension,
+            phase,
             map_step: options.map_step,
             time_step: options.map_step / options.steps() as f64,
         }
@@ -69,9 +75,19 @@ impl SampledTransitions {
         &self.cells
     }
 
+    /// Slopes of the density in every sampled cell, from the masses of all cells of the space; see [`cell_slopes`].
+    pub(crate) fn slopes(&self, space: &CellSpace, mass: &[f64]) -> Vec<[f64; MAX_DIMENSION]> {
+        cell_slopes(space, &self.cells, mass, self.phase)
+    }
+
     /// Number of groups.
     pub fn groups(&self) -> usize {
         self.groups
+    }
+
+    /// Time that a transition spans.
+    pub(crate) fn map_step(&self) -> f64 {
+        self.map_step
     }
 
     /// Step the integrator took: the largest divisor of the map step that is not above the one asked for.
@@ -97,7 +113,7 @@ impl SampledTransitions {
 
     /// The transition matrix for a density that is linear in each cell, p_j/V (1 + Σ_a s_a u_a) with u_a from -½ to ½
     /// across the cell: every sample counts by the density at its start. `slopes` holds the s_a of every sampled cell,
-    /// as [`cell_slopes`](super::cell_slopes) makes them (Σ |s_a| < 2, so that no weight is negative). `left_out` names
+    /// as [`cell_slopes`] makes them (Σ |s_a| < 2, so that no weight is negative). `left_out` names
     /// a group that is not counted. Without kept starts this is the plain matrix.
     pub(crate) fn corrected_matrix(
         &self,
@@ -152,6 +168,9 @@ impl SampledTransitions {
             return self.numerical_diffusion(mass);
         }
         let diffusion = |axis: usize| {
+            if self.phase == Some(axis) {
+                return 0.0;
+            }
             // Σ 1, Σ x, Σ x² of end points, and of the reconstructed density.
             let (mut ends, mut cells) = ([0.0; 3], [0.0; 3]);
             for (j, column) in self.columns.iter().enumerate() {
@@ -260,6 +279,7 @@ impl SampledTransitions {
             escape,
             cells: self.cells.clone(),
             map_step: self.map_step,
+            phase: self.phase,
         }
     }
 }

@@ -4,36 +4,14 @@
 use crate::continuation::Measure;
 use crate::continuation::measure::{TURN_DIFFUSION, VELOCITY};
 use crate::density::{EstimatedMoments, Moments, layout_axis};
-use crate::method::forcing::Forced;
-use crate::method::{MOST_PHASES, MethodError, Problem};
+use crate::method::forcing::{Forced, parts_of_period};
+use crate::method::{MethodError, Problem};
 use crate::monte_carlo::{Estimate, StepBias};
 use crate::space::{Axis, CellSpace};
-use crate::system::{AtPhase, System};
+use crate::system::System;
 
 /// Parts of a period at which a forced system is looked at, at least.
 const FEWEST_PARTS: usize = 32;
-
-/// Distance of a phase from a part of the period that is rounding, in parts.
-const ROUNDING: f64 = 1e-9;
-
-/// The phases that are watched.
-fn phases(problem: &Problem) -> impl Iterator<Item = AtPhase> {
-    let quantities = problem.family().quantities().iter();
-    quantities.filter_map(|quantity| quantity.phase())
-}
-
-/// Even parts of the period among which all phases are.
-fn parts_of_period(problem: &Problem) -> Result<usize, MethodError> {
-    let fits = |parts: &usize| {
-        let off = |at: AtPhase| {
-            let place = at.phase * *parts as f64;
-            (place - place.round()).abs()
-        };
-        phases(problem).all(|at| off(at) <= ROUNDING)
-    };
-    let fewest = (1..=MOST_PHASES).find(fits).ok_or(MethodError::Phases)?;
-    Ok(FEWEST_PARTS.next_multiple_of(fewest))
-}
 
 /// The problem on cells that trajectories are counted into: even ones over a turn, those along a phase each for the
 /// phase at its beginning. Other axes keep what they have.
@@ -51,7 +29,7 @@ pub(super) fn seen_at_phases(problem: &Problem) -> Result<Problem, MethodError> 
         true => Ok(Axis::turn(
             axis.from(),
             axis.to(),
-            parts_of_period(problem)?,
+            parts_of_period(problem, FEWEST_PARTS)?,
         )?),
         false if axis.is_closed() => Ok(layout_axis(axis)),
         false => Ok(axis.clone()),

@@ -8,7 +8,7 @@ mod plan;
 mod source;
 mod transitions;
 #[cfg(test)]
-mod turns_tests;
+pub(in crate::method) mod turns_tests;
 
 pub(crate) use cost::MonteCarloCost;
 pub use options::{Estimator, MonteCarloOptions};

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::{Estimator, MonteCarloOptions};
 use crate::cancellation::{Cancellation, Cancelled};
+use crate::method::forcing::part_of_period;
 use crate::method::time_step::time_step;
 use crate::monte_carlo::{ErgodicRun, Relaxation, StepBias};
 use crate::space::CellSpace;
@@ -126,14 +127,8 @@ impl MonteCarloPlan {
     }
 }
 
-/// Time between the phases at which a forced system is looked at.
-fn part_of_period(system: &dyn System, space: &CellSpace) -> Option<f64> {
-    let axis = system.facts().phase?;
-    let frequency = system.drift_at(0.0, &vec![0.0; system.dimension()])[axis];
-    Some(1.0 / (frequency * space.axes()[axis].count() as f64))
-}
-
-/// The longest of it along a sweep; and no shorter than some steps that follow the forcing.
+/// The longest time between looks at a forced system along a sweep; and no shorter than some steps that follow the
+/// forcing.
 fn longest_part(systems: &[Arc<dyn System>], space: &CellSpace) -> Option<f64> {
     let parts = systems.iter();
     let parts = parts.filter_map(|system| part_of_period(system.as_ref(), space));

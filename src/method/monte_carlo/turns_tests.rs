@@ -14,7 +14,7 @@ use crate::space::{Axis, CellSpace};
 use crate::system::{AtPhase, Family, Model, Path, Quantity, TypedModel};
 
 /// A model at a value of `A`, with these densities at phases watched beside those of all axes over the period.
-fn problem(
+pub(crate) fn problem(
     (model, fixed): (&Arc<Model>, &[(&str, f64)]),
     amplitude: f64,
     axes: Vec<Axis>,
@@ -45,7 +45,7 @@ fn sampled(problem: &Problem, error: f64) -> Solution<'static> {
 }
 
 /// Differences of a density from the exact masses of its cells in standard errors, where a cell holds 1e-4.
-fn off(density: &EstimatedDensity, exact: impl Fn(&[f64]) -> f64) -> Vec<f64> {
+pub(crate) fn off(density: &EstimatedDensity, exact: impl Fn(&[f64]) -> f64) -> Vec<f64> {
     let axis = &density.density.axes[0];
     let masses = density.density.masses();
     let cells = axis.edges().windows(2).zip(masses).enumerate();
@@ -58,7 +58,7 @@ fn off(density: &EstimatedDensity, exact: impl Fn(&[f64]) -> f64) -> Vec<f64> {
 }
 
 /// Mean square one, within what so many differences scatter (neighbours vary together), and none far out.
-fn assert_standard(off: &[f64], what: &str) {
+pub(crate) fn assert_standard(off: &[f64], what: &str) {
     let count = off.len() as f64;
     let square = off.iter().map(|z| z * z).sum::<f64>() / count;
     let worst = off.iter().fold(0.0_f64, |worst, z| worst.max(z.abs()));
@@ -72,7 +72,7 @@ fn known(solution: &Solution<'_>, name: &str) -> (f64, f64) {
     known.unwrap_or_else(|| panic!("{name} is not known"))
 }
 
-fn assert_known(solution: &Solution<'_>, name: &str, exact: f64, largest_error: f64) {
+pub(crate) fn assert_known(solution: &Solution<'_>, name: &str, exact: f64, largest_error: f64) {
     let (value, error) = known(solution, name);
     assert!(error < largest_error, "{name}: {value} ± {error:e}");
     let off = (value - exact) / error;

@@ -3,6 +3,9 @@
 
 mod cost;
 mod options;
+mod phases;
+#[cfg(test)]
+mod phases_tests;
 mod session;
 mod slope_correction;
 mod source;
@@ -11,5 +14,6 @@ mod widening;
 
 pub(crate) use cost::SgcmCost;
 pub use options::{Correction, SgcmOptions};
+pub(crate) use phases::FEWEST_PHASES;
 pub use slope_correction::{Corrected, solve_corrected};
 pub use source::SgcmSource;

@@ -9,7 +9,7 @@
 use super::Correction;
 use crate::MAX_DIMENSION;
 use crate::method::MethodError;
-use crate::sampling::{SampledTransitions, TransitionMatrix, cell_slopes};
+use crate::sampling::{SampledTransitions, TransitionMatrix};
 use crate::space::CellSpace;
 use crate::stationary::{Options, Outcome, SteadyState, solve};
 
@@ -23,7 +23,7 @@ pub struct Corrected {
     pub outcome: Outcome,
     /// The transition matrix of the last turn.
     pub matrix: TransitionMatrix,
-    /// Slopes of the density in every sampled cell, see `cell_slopes`; all zero without correction.
+    /// Slopes of the density in every sampled cell, see `SampledTransitions::slopes`; all zero without correction.
     pub slopes: Vec<[f64; MAX_DIMENSION]>,
     /// Turns that were made.
     pub rounds: usize,
@@ -47,7 +47,7 @@ pub fn solve_corrected(
     largest_change: f64,
 ) -> Result<Corrected, MethodError> {
     let flat = vec![[0.0; MAX_DIMENSION]; transitions.cells().len()];
-    let slopes_of = |mass: &[f64]| cell_slopes(space, transitions.cells(), mass);
+    let slopes_of = |mass: &[f64]| transitions.slopes(space, mass);
     let mut slopes = match guess {
         Some(mass) if transitions.keeps_starts() => slopes_of(mass),
         _ => flat,

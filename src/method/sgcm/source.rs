@@ -5,20 +5,23 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::phases::{amplitudes, on_phases, with_axis};
 use super::slope_correction::{Corrected, solve_by};
 use super::steps::{Steps, choose_steps};
-use super::widening::widened;
+use super::widening::all_moments;
 use super::{Correction, SgcmOptions};
 use crate::MAX_DIMENSION;
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::continuation::measure::{ESCAPE_RATE, MAP_STEP, TIME_STEP_BIAS};
 use crate::continuation::{Finding, Solution, Subject};
-use crate::density::{EstimatedDensity, excess_variances, moments};
+use crate::density::{EstimatedDensity, moments};
+use crate::method::forcing::part_of_period;
 use crate::method::measures::{Cells, Others};
 use crate::method::problem::Maps;
 use crate::method::report::Reporter;
 use crate::method::watched::Masses;
 use crate::method::{MethodError, Problem};
+use crate::monte_carlo::StepBias;
 use crate::sampling::{
     SampledTransitions, SamplingError, SamplingOptions, TransitionMatrix, sample_transitions,
 };
@@ -80,6 +83,7 @@ impl SgcmSource {
         options: &SgcmOptions,
         cancellation: &Cancellation,
     ) -> Result<Self, MethodError> {
+        let problem = &on_phases(problem)?;
         let steps = choose_steps(problem, options, cancellation)?;
         Ok(Self {
             problem: problem.checked_by(SgcmOptions::CELL_CHECK),
@@ -97,12 +101,17 @@ impl SgcmSource {
         self.problem.space().n_cells()
     }
 
-    /// The same source on other cells over the same ranges, with the steps that were chosen.
+    /// The same source on other cells over the same ranges, with the steps and the phases that were chosen.
     ///
     /// # Errors
     /// [`MethodError`] when the cells have another number of axes.
     pub(crate) fn on(&self, space: &CellSpace) -> Result<Self, MethodError> {
         let check = self.problem.subject().cell_check;
+        let own = self.problem.space().axes();
+        let space = &match self.problem.family().model().phase_axis() {
+            Some(phase) => with_axis(space, phase, &own[phase])?,
+            None => space.clone(),
+        };
         let problem = self.problem.on(space.clone())?.checked_by(check);
         let mut steps = self.steps.clone();
         // Cells to grow from; all others that hold mass are reached from them.
@@ -142,8 +151,11 @@ impl SgcmSource {
         start: Option<&[f64]>,
         cancellation: &Cancellation,
     ) -> Result<SampledTransitions, SamplingError> {
+        let part = part_of_period(system, self.problem.space());
+        let passed = self.steps.phase.map(|phase| phase.passed as f64);
+        let of_period = part.zip(passed).map(|(part, passed)| part * passed);
         let options = SamplingOptions {
-            map_step: self.steps.map_step,
+            map_step: of_period.unwrap_or(self.steps.map_step),
             time_step: self.steps.time_step,
             samples: self.options.samples,
             groups: self.options.replicates,
@@ -222,13 +234,13 @@ impl SgcmSource {
     ) -> Result<SolvedMasses, MethodError> {
         let transitions = &point.transitions;
         let info = &steady.info;
-        let escape_rate = escape_rate(info.escape_per_step, self.steps.map_step);
+        let escape_rate = escape_rate(info.escape_per_step, transitions.map_step());
         let relaxation_time = if info.escape_per_step > NO_ESCAPE {
-            second_eigenvalue(matrix, &steady, cancellation)?.relaxation_time
+            second_eigenvalue(matrix, self.problem.space(), &steady, cancellation)?.relaxation_time
         } else {
             None
         };
-        let mut reporter = self.reporter();
+        let mut reporter = self.reporter(point);
         reporter.report.iterations = info.iterations;
         reporter.report.residual = info.residual;
         reporter.report.add(&ESCAPE_RATE, "", escape_rate);
@@ -254,14 +266,24 @@ impl SgcmSource {
         let densities = self.densities(point, &steady, &replicates)?;
         let space = self.problem.space();
         let maps = self.maps(point.value)?;
-        let sampled = maps.all_sampled_moments(space, &of_axes, &steady.mass, &replicates)?;
-        let excess = excess_variances(space, &steady.mass)?;
-        reporter.moments(&widened(sampled, &excess, widening));
+        let masses = (steady.mass.as_slice(), replicates.as_slice());
+        reporter.moments(&all_moments(
+            &self.problem,
+            &maps,
+            &of_axes,
+            masses,
+            widening,
+        )?);
+        let system = point.system.as_ref();
+        let share = widening.abs() + bias.map_or(0.0, StepBias::certain);
+        let doubts = (share, reporter.missing());
+        let answers = amplitudes(&self.problem, system, masses, doubts);
+        reporter.report.measures.extend(answers);
         reporter.replicates(replicates.len(), transitions.groups());
         let solution = reporter.solution(
             densities,
             Some(&Cells {
-                system: point.system.as_ref(),
+                system,
                 space,
                 weights: &steady.mass,
                 others: Others::Replicates(&replicates),
@@ -296,10 +318,10 @@ impl SgcmSource {
         }
     }
 
-    fn reporter(&self) -> Reporter<'_> {
+    fn reporter(&self, point: &SampledPoint) -> Reporter<'_> {
         let mut reporter = Reporter::new(METHOD, &self.problem);
         let report = &mut reporter.report;
-        report.add(&MAP_STEP, "", self.steps.map_step);
+        report.add(&MAP_STEP, "", point.transitions.map_step());
         if let Some(bias) = self.steps.bias {
             report.add(&TIME_STEP_BIAS, "", bias.relative.abs());
         }
@@ -359,13 +381,13 @@ impl SgcmSource {
                 self.solved(point, correction, solved, steady, cancellation)
             }
             Outcome::SeveralClasses { classes, .. } => {
-                let mut reporter = self.reporter();
+                let mut reporter = self.reporter(point);
                 reporter.several_classes(&classes);
                 Ok((Solution::without_density(reporter.report), None))
             }
             Outcome::NoneInside { escape_per_step } => {
-                let mut reporter = self.reporter();
-                let rate = escape_rate(escape_per_step, self.steps.map_step);
+                let mut reporter = self.reporter(point);
+                let rate = escape_rate(escape_per_step, point.transitions.map_step());
                 reporter.report.add(&ESCAPE_RATE, "", rate);
                 reporter.no_steady_state(Finding::LeavesAtOnce { rate });
                 Ok((Solution::without_density(reporter.report), None))

@@ -2,10 +2,11 @@
 //! serves the whole sweep, so that the transition matrix varies smoothly with the parameter.
 
 use super::SgcmOptions;
+use super::phases::PhaseMap;
 use crate::cancellation::Cancellation;
 use crate::method::structure::{closed_ends, kinked_surfaces};
 use crate::method::time_step::time_step;
-use crate::method::{MethodError, Problem, has_densities, has_no_turns};
+use crate::method::{MethodError, Problem, StepChoice, has_densities, turn};
 use crate::monte_carlo::{Relaxation, StepBias, TOLERATED_BIAS, relaxation};
 use crate::sampling::{Pilot, pilot};
 use crate::system::SwitchingSurface;
@@ -13,8 +14,10 @@ use crate::system::SwitchingSurface;
 /// Steps, and what else the pilots showed.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Steps {
-    /// Time one transition spans.
+    /// Time one transition spans; of a forced system where it is shortest.
     pub(super) map_step: f64,
+    /// How the phase of a forcing is mapped.
+    pub(super) phase: Option<PhaseMap>,
     /// Step of the integrator.
     pub(super) time_step: f64,
     /// Its bias, the most certain at both ends and in the middle of the sweep.
@@ -35,7 +38,9 @@ pub(super) fn choose_steps(
     cancellation: &Cancellation,
 ) -> Result<Steps, MethodError> {
     let (systems, space) = (problem.family().along()?, problem.space());
-    has_no_turns(problem)?;
+    if let Some(axis) = turn(problem, false)? {
+        return Err(MethodError::Turn { axis });
+    }
     has_densities(problem)?;
     let (mut pilots, mut relaxed) = (Vec::<Pilot>::new(), Vec::<Relaxation>::new());
     for system in &systems {
@@ -43,7 +48,7 @@ pub(super) fn choose_steps(
         pilots.push(pilot(system, space, seed, cancellation)?);
         relaxed.push(relaxation(system, space, seed, cancellation)?);
     }
-    let (time_step, bias) = time_step(
+    let (mut time_step, bias) = time_step(
         (&systems, &relaxed),
         space,
         options.time_step,
@@ -57,6 +62,11 @@ pub(super) fn choose_steps(
         })
     };
     let map_step = options.map_step.or(longest);
+    let all = systems.iter().map(AsRef::as_ref);
+    let phase = PhaseMap::choose(all, space, (options.map_step, map_step));
+    if let (Some(phase), StepChoice::Auto) = (&phase, options.time_step) {
+        time_step = time_step.min(phase.longest_step());
+    }
     let mut cells: Vec<usize> = pilots
         .iter()
         .flat_map(|pilot| pilot.cells.clone())
@@ -67,7 +77,8 @@ pub(super) fn choose_steps(
         .map(|axis| largest(&pilots, |pilot| pilot.noise_intensity[axis]))
         .collect();
     Ok(Steps {
-        map_step,
+        map_step: phase.map_or(map_step, |phase| phase.map_step()),
+        phase,
         time_step,
         bias,
         cells,

@@ -134,6 +134,7 @@ impl Record {
                 .then_some(split.max(SLOWER_THAN_SPREAD * crossing)),
             damping,
             cells: self.cells,
+            phase: None,
         }
     }
 }

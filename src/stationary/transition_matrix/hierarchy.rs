@@ -19,18 +19,62 @@ const LUMPS_A_TASK: usize = 512;
 /// Marks a transition inside a lump.
 const INSIDE: u32 = u32::MAX;
 
-/// Place of a cell on the Morton curve: the bits of its positions interleaved. One level coarser is a shift
-/// by the number of axes.
-pub(super) fn morton(space: &CellSpace, cell: usize) -> u128 {
-    let axes = space.dimension();
-    let mut key = 0;
-    for axis in 0..axes {
-        let position = space.position(cell, axis) as u128;
-        for bit in 0..u128::BITS as usize / axes {
-            key |= (position >> bit & 1) << (bit * axes + axes - 1 - axis);
+/// The Morton curve through the cells of a space.
+pub(super) struct Curve<'a> {
+    space: &'a CellSpace,
+    /// The axes whose positions are interleaved.
+    lumped: Vec<usize>,
+    /// The phase of a forcing, and the place of its first bit.
+    phase: Option<(usize, usize)>,
+}
+
+impl<'a> Curve<'a> {
+    /// Cells at different phases are lumped last, when all cells at one phase are a single lump: what goes round does
+    /// not die out by smoothing, and is found exactly where it is kept apart down to the coarsest chain.
+    pub(super) fn new(space: &'a CellSpace, phase: Option<usize>) -> Self {
+        let lumped = (0..space.dimension()).filter(|&axis| phase != Some(axis));
+        let lumped: Vec<usize> = lumped.collect();
+        let bits = |&axis: &usize| space.axes()[axis].count().next_power_of_two().ilog2();
+        let most = lumped.iter().map(bits).max().unwrap_or(0) as usize;
+        Self {
+            space,
+            phase: phase.map(|axis| (axis, most * lumped.len())),
+            lumped,
         }
     }
-    key
+
+    /// Axes whose bits are interleaved: one level coarser is a shift by so many bits.
+    pub(super) fn axes(&self) -> usize {
+        self.lumped.len().max(1)
+    }
+
+    /// Number of cells of the space.
+    pub(super) fn cells(&self) -> usize {
+        self.space.n_cells()
+    }
+
+    /// The phase of each of some cells by its number; none without a forcing.
+    pub(super) fn phases(&self, cells: impl Iterator<Item = usize>) -> Vec<usize> {
+        let of = |axis| cells.map(|cell| self.space.position(cell, axis)).collect();
+        self.phase.map_or_else(Vec::new, |(axis, _)| of(axis))
+    }
+
+    /// Place of a cell on the curve: the bits of its positions interleaved.
+    pub(super) fn place(&self, cell: usize) -> u128 {
+        let axes = self.lumped.len();
+        let mut key = 0;
+        for (index, &axis) in self.lumped.iter().enumerate() {
+            let position = self.space.position(cell, axis) as u128;
+            for bit in 0..u128::BITS as usize / axes {
+                key |= (position >> bit & 1) << (bit * axes + axes - 1 - index);
+            }
+        }
+        let phase = self.phase.map(|(axis, first)| {
+            let position = self.space.position(cell, axis) as u128;
+            position << first
+        });
+        key | phase.unwrap_or(0)
+    }
 }
 
 /// One level of the hierarchy.

@@ -1,5 +1,7 @@
 //! Power iteration p ← P p / Σ P p, the cell map run until it stands.
 
+use std::f64::consts::PI;
+
 use super::chain::{Chain, distance, normalise};
 use super::convergence::Contraction;
 use super::multilevel::Iterate;
@@ -16,8 +18,12 @@ const PATIENCE: usize = 2000;
 ///
 /// Fast modes may hide a slow one of small amplitude, so the first claim of convergence is checked against
 /// |λ₂|/λ₁ before it is believed.
+///
+/// Where states have `phases`, the chain goes round among them for ever. Then only half of the mass takes each step,
+/// which leaves the steady state as it is: modes that go round in m phases shrink by cos(π/m).
 pub(super) fn solve(
     chain: &Chain,
+    phases: &[usize],
     mass: Vec<f64>,
     options: &Options,
 ) -> Result<Iterate, Cancelled> {
@@ -32,10 +38,15 @@ pub(super) fn solve(
     };
     let mut next = vec![0.0; chain.len()];
     let mut verified = false;
+    let round = phases.iter().max().map(|last| last + 1);
     let mut milestone = f64::INFINITY;
     while result.iterations < options.max_iterations && !result.converged {
         options.cancellation.check()?;
         chain.apply(&result.mass, &mut next);
+        if round.is_some() {
+            let pairs = next.iter_mut().zip(&result.mass);
+            pairs.for_each(|(next, mass)| *next = 0.5 * (*next + mass));
+        }
         normalise(&mut next, 0.0);
         result.iterations += 1;
         result.matrix_passes += 1;
@@ -43,9 +54,14 @@ pub(super) fn solve(
         std::mem::swap(&mut next, &mut result.mass);
         result.error_estimate = contraction.observe(change);
         if result.error_estimate <= tolerance && !verified {
-            let second = second_eigenvalue::of_chain(chain, &result.mass, &options.cancellation)?;
+            let states = (result.mass.as_slice(), phases);
+            let second = second_eigenvalue::of_chain(chain, states, &options.cancellation)?;
             result.matrix_passes += second.products;
-            contraction.set_known(second.modulus / (1.0 - chain.escaping(&result.mass)));
+            let ratio = second.modulus / (1.0 - chain.escaping(&result.mass));
+            contraction.set_known(match round {
+                Some(count) => (0.5 + 0.5 * ratio).max((PI / count as f64).cos()),
+                None => ratio,
+            });
             result.error_estimate = contraction.estimate(change);
             verified = true;
         }

@@ -1,15 +1,19 @@
 //! Modulus of the second eigenvalue of a transition matrix: how fast the steady state is reached.
 //!
 //! Arnoldi's method on powers of P - λ₁ p 1ᵀ (Wielandt's deflation: as 1·p = 1, it replaces λ₁ by zero and
-//! keeps the other eigenvalues; without escape it is P on vectors of sum zero). Powers, because the modes of an
+//! keeps the other eigenvalues; without escape it is P on vectors of sum zero). In a chain that goes round among m phases
+//! the parts of p at each phase are taken from one to the next, which makes m eigenvalues of modulus λ₁: the same is
+//! done with each of these parts, and what is left tells how fast the state of any phase is reached. Powers, because the modes of an
 //! oscillator lie close to a circle, and their moduli draw apart.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::chain::{Chain, SoundMatrix};
+use super::hierarchy::Curve;
 use super::{StationaryError, SteadyState};
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::sampling::TransitionMatrix;
+use crate::space::CellSpace;
 
 /// Applications of P per Krylov vector in the first sweep; each restart doubles them.
 const FIRST_POWER: usize = 8;
@@ -49,6 +53,7 @@ pub struct SecondEigenvalue {
 /// As for [`super::solve`], from the transition matrix; [`StationaryError::Cancelled`].
 pub fn second_eigenvalue(
     matrix: &TransitionMatrix,
+    space: &CellSpace,
     steady: &SteadyState,
     cancellation: &Cancellation,
 ) -> Result<SecondEigenvalue, StationaryError> {
@@ -59,7 +64,9 @@ pub fn second_eigenvalue(
         .collect();
     let mass: Vec<f64> = rows.iter().map(mass_of).collect();
     let chain = checked.restriction(&rows);
-    let found = of_chain(&chain, &mass, cancellation)?;
+    let curve = Curve::new(space, matrix.phase);
+    let phases = curve.phases(rows.iter().map(|&row| checked.cells[row]));
+    let found = of_chain(&chain, (&mass, &phases), cancellation)?;
     let ratio = found.modulus / (1.0 - chain.escaping(&mass));
     let relaxation_time = (ratio < 1.0).then(|| -matrix.map_step / ratio.ln());
     Ok(SecondEigenvalue {
@@ -68,15 +75,18 @@ pub fn second_eigenvalue(
     })
 }
 
-/// The second eigenvalue of a chain with steady state `mass`; the relaxation time is left out.
+/// The second eigenvalue of a chain with steady state `mass`, and the phase of each state where it goes round; the
+/// relaxation time is left out.
 pub(super) fn of_chain(
     chain: &Chain,
-    mass: &[f64],
+    (mass, phases): (&[f64], &[usize]),
     cancellation: &Cancellation,
 ) -> Result<SecondEigenvalue, Cancelled> {
     let mut krylov = Krylov {
         chain,
         mass,
+        phases,
+        of_phases: sums(mass, phases),
         cancellation,
         kept: 1.0 - chain.escaping(mass),
         power: FIRST_POWER,
@@ -110,9 +120,22 @@ pub(super) fn of_chain(
 /// Modulus of the dominant Ritz value, its residual relative to the modulus, and a vector to start again from.
 type Swept = (f64, f64, DVector<f64>);
 
+/// Sums over the states of each phase, over all of them without phases.
+fn sums(values: &[f64], phases: &[usize]) -> Vec<f64> {
+    let mut sums = vec![0.0; phases.iter().max().map_or(1, |last| last + 1)];
+    for (state, value) in values.iter().enumerate() {
+        sums[phases.get(state).copied().unwrap_or(0)] += value;
+    }
+    sums
+}
+
 struct Krylov<'a> {
     chain: &'a Chain,
     mass: &'a [f64],
+    /// Phase of each state; empty where all have one.
+    phases: &'a [usize],
+    /// Masses of the phases.
+    of_phases: Vec<f64>,
     cancellation: &'a Cancellation,
     /// λ₁.
     kept: f64,
@@ -122,17 +145,18 @@ struct Krylov<'a> {
 }
 
 impl Krylov<'_> {
-    /// (P - λ₁ p 1ᵀ)^power v.
+    /// (P - λ₁ p 1ᵀ)^power v, or the same phase by phase.
     fn apply(&mut self, vector: &DVector<f64>) -> Result<DVector<f64>, Cancelled> {
         let mut current = vector.clone();
         let mut next = DVector::zeros(vector.len());
         for _ in 0..self.power {
             self.cancellation.check()?;
-            let total = self.kept * current.sum();
-            self.chain.apply(current.as_slice(), next.as_mut_slice());
-            for (value, mass) in next.iter_mut().zip(self.mass) {
-                *value -= total * mass;
+            let totals = sums(current.as_slice(), self.phases);
+            for (state, (value, mass)) in current.iter_mut().zip(self.mass).enumerate() {
+                let phase = self.phases.get(state).copied().unwrap_or(0);
+                *value -= totals[phase] / self.of_phases[phase] * mass;
             }
+            self.chain.apply(current.as_slice(), next.as_mut_slice());
             std::mem::swap(&mut current, &mut next);
         }
         self.products += self.power;

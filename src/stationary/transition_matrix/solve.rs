@@ -2,7 +2,7 @@
 
 use super::chain::{SoundMatrix, normalise};
 use super::classes::{self, Carrier};
-use super::hierarchy::morton;
+use super::hierarchy::Curve;
 use super::multilevel::{self, Iterate};
 use super::{Info, LARGEST_ESCAPE, Options, Outcome, Solver, StationaryError, SteadyState};
 use super::{absorption, power};
@@ -49,7 +49,10 @@ pub fn solve(
                 absorption::shares(&checked, space, &classes, &initial, cancellation)?;
             Ok(Outcome::SeveralClasses { classes, escaped })
         }
-        Carrier::One(rows) => Ok(solve_on(&checked, space, rows, guess, options)?),
+        Carrier::One(rows) => {
+            let curve = Curve::new(space, matrix.phase);
+            Ok(solve_on(&checked, &curve, rows, guess, options)?)
+        }
     }
 }
 
@@ -80,14 +83,14 @@ fn initial(
 /// Solves on the rows that carry the steady state.
 fn solve_on(
     matrix: &SoundMatrix<'_>,
-    space: &CellSpace,
+    curve: &Curve<'_>,
     rows: Vec<usize>,
     guess: Option<&[f64]>,
     options: &Options,
 ) -> Result<Outcome, Cancelled> {
     let mut placed: Vec<(u128, usize)> = rows
         .iter()
-        .map(|&row| (morton(space, matrix.cells[row]), row))
+        .map(|&row| (curve.place(matrix.cells[row]), row))
         .collect();
     placed.sort_unstable();
     let (keys, rows): (Vec<u128>, Vec<usize>) = placed.into_iter().unzip();
@@ -101,9 +104,12 @@ fn solve_on(
         converged,
     } = match options.solver {
         Solver::MultilevelAggregation => {
-            multilevel::solve(&chain, keys, space.dimension(), start, options)?
+            multilevel::solve(&chain, keys, curve.axes(), start, options)?
         }
-        Solver::PowerIteration => power::solve(&chain, start, options)?,
+        Solver::PowerIteration => {
+            let phases = curve.phases(rows.iter().map(|&row| matrix.cells[row]));
+            power::solve(&chain, &phases, start, options)?
+        }
     };
     let escape_per_step = chain.escaping(&mass);
     if converged && escape_per_step > LARGEST_ESCAPE {
@@ -120,7 +126,7 @@ fn solve_on(
         class_cells: rows.len(),
         transient_cells: matrix.len() - rows.len(),
     };
-    let mut all = vec![0.0; space.n_cells()];
+    let mut all = vec![0.0; curve.cells()];
     for (&row, value) in rows.iter().zip(mass) {
         all[matrix.cells[row]] = value;
     }

@@ -32,6 +32,7 @@ fn transitions(n: usize, entries: &[(usize, usize, f64)]) -> TransitionMatrix {
         escape,
         cells: (0..n).collect(),
         map_step: 1.0,
+        phase: None,
     }
 }
 
@@ -42,6 +43,7 @@ fn over_all_cells(matrix: CsMat<f64>, escape: Vec<f64>) -> TransitionMatrix {
         matrix,
         escape,
         map_step: 1.0,
+        phase: None,
     }
 }
 

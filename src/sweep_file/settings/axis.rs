@@ -2,6 +2,7 @@
 
 use super::modes_of::ModesOf;
 use crate::density::BINS_OF_A_TURN;
+use crate::method::FEWEST_PHASES;
 use crate::space::{Axis, Grading, SpaceError};
 use crate::sweep_file::draft::{MethodKind, Modes};
 
@@ -50,7 +51,12 @@ impl AxisSettings {
             Some(Modes::Auto) => return None,
             Some(Modes::Number(count)) => return Some(self.series.axis((from, to), count)),
             None if self.series == ModesOf::Turn => {
-                return Some(Axis::turn(from, to, BINS_OF_A_TURN));
+                // Of all axes that close on themselves SGCM maps the phase of a forcing alone.
+                let count = match method {
+                    MethodKind::Sgcm => FEWEST_PHASES,
+                    MethodKind::Generator | MethodKind::MonteCarlo => BINS_OF_A_TURN,
+                };
+                return Some(Axis::turn(from, to, count));
             }
             None => {}
         }

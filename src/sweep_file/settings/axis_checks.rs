@@ -52,7 +52,7 @@ pub(super) fn warn_of_idle_grade(
     reader.warn(found);
 }
 
-/// Reports axes that close on themselves where the chosen method maps cells.
+/// Reports angles where the chosen method maps cells.
 pub(super) fn refuse_turns(
     reader: &mut Reader<'_>,
     draft: &Draft,
@@ -60,17 +60,18 @@ pub(super) fn refuse_turns(
     along: &SweptSystems<'_>,
 ) -> Option<()> {
     let method = draft.method.kind;
-    let turn = (0..model.axes.len()).find(|&axis| along.turn(axis).is_some());
+    let is_angle = |axis: &usize| along.turn(*axis).is_some() && model.phase_axis() != Some(*axis);
+    let turn = (0..model.axes.len()).find(is_angle);
     let axis = match turn {
         Some(axis) if method == MethodKind::Sgcm => &model.axes[axis].name,
         _ => return Some(()),
     };
     let title = format!(
-        "`{axis}` closes on itself, and {} has only lines",
+        "`{axis}` closes on itself, and {} maps no angles",
         method.name()
     );
     let found = Diagnostic::new(title).remedy(
-        "use `method.kind = \"generator\"`, where harmonics carry angles and the phase of a forcing, or \"monte-carlo\", whose trajectories go round",
+        "use `method.kind = \"generator\"`, where harmonics carry angles, or \"monte-carlo\", whose trajectories go round",
     );
     reader.report(match reader.place(&["method", "kind"]) {
         Some(place) => found.at(place, "not for this system"),

@@ -77,13 +77,60 @@ fn absorbed_walk(n: usize, laziness: f64) -> (TransitionMatrix, Vec<f64>) {
     (transitions(n, &entries), scaled((0..n).map(sine).collect()))
 }
 
+/// A walk between two states that goes round m phases, half an escape at one of them.
+#[test]
+fn what_goes_round_has_a_steady_state_and_relaxes_as_over_a_period() {
+    let (count, passed) = (6, 5);
+    let space = grid(&[2, count]);
+    for escape in [0.0, 0.01] {
+        let mut entries = Vec::new();
+        for phase in 0..count {
+            let next = (phase + passed) % count;
+            let kept = if phase == 2 { 1.0 - escape } else { 1.0 };
+            // p(0 → 1) is larger by one at every phase, p(1 → 0) the same at all.
+            let up = 0.05 * (phase + 1) as f64;
+            for (to, from, share) in [(0, 0, 1.0 - up), (1, 0, up), (0, 1, 0.2), (1, 1, 0.8)] {
+                entries.push((to * count + next, from * count + phase, share * kept));
+            }
+        }
+        let matrix = TransitionMatrix {
+            phase: Some(1),
+            ..transitions(2 * count, &entries)
+        };
+        // What the map of one period makes of (q, 1 - q) at phase 0, and its second eigenvalue.
+        let (mut rest, mut slope) = (0.0, 1.0);
+        for step in 0..count {
+            let up = 0.05 * (step * passed % count + 1) as f64;
+            (rest, slope) = (rest * (0.8 - up) + 0.2, slope * (0.8 - up));
+        }
+        let exact = rest / (1.0 - slope);
+        for solver in Solver::ALL {
+            let found = steady(&matrix, &space, None, solver, 1e-11);
+            let [low, high] = [0, 1].map(|state| found.mass[state * count]);
+            assert!((low / (low + high) - exact).abs() < 1e-9, "{solver:?}");
+            if escape == 0.0 {
+                assert!((low + high - 1.0 / count as f64).abs() < 1e-9, "{solver:?}");
+            }
+            let kept = 1.0 - found.info.escape_per_step;
+            assert!((kept.powi(6) - (1.0 - escape)).abs() < 1e-9);
+            let second = second_eigenvalue(&matrix, &space, &found, &Cancellation::new()).unwrap();
+            let modulus = (slope.abs() * (1.0 - escape)).powf(1.0 / count as f64);
+            assert!(
+                (second.modulus - modulus).abs() < 1e-6,
+                "{second:?} {modulus}"
+            );
+            assert!(second.relaxation_time.is_some());
+        }
+    }
+}
+
 #[test]
 fn two_states_balance() {
     let matrix = transitions(2, &[(0, 0, 0.7), (1, 0, 0.3), (0, 1, 0.1), (1, 1, 0.9)]);
     for solver in Solver::ALL {
         let found = steady(&matrix, &grid(&[2]), None, solver, 1e-13);
         assert!(distance(&found.mass, &[0.25, 0.75]) < 1e-13);
-        let second = second_eigenvalue(&matrix, &found, &Cancellation::new()).unwrap();
+        let second = second_eigenvalue(&matrix, &grid(&[2]), &found, &Cancellation::new()).unwrap();
         assert!((second.modulus - 0.6).abs() < 1e-10, "{second:?}");
     }
 }
@@ -146,7 +193,7 @@ fn leaking_walks_are_quasi_stationary() {
         );
         let escape = 0.8 * (1.0 - angle.cos());
         assert!((found.info.escape_per_step / escape - 1.0).abs() < 1e3 * tolerance);
-        let second = second_eigenvalue(&matrix, &found, &Cancellation::new()).unwrap();
+        let second = second_eigenvalue(&matrix, &grid(&[n]), &found, &Cancellation::new()).unwrap();
         let exact = 0.2 + 0.8 * (2.0 * angle).cos();
         assert!(
             (second.modulus - exact).abs() < 1e-6,
@@ -220,7 +267,7 @@ fn periodic_chains_are_solved_or_reported() {
     assert!(!power.info.converged, "{:?}", power.info);
     assert!(distance(&power.mass, &found.mass) > 1e-3);
     assert!(power.info.iterations < 50_000, "oscillation is given up");
-    let second = second_eigenvalue(&matrix, &found, &Cancellation::new()).unwrap();
+    let second = second_eigenvalue(&matrix, &space, &found, &Cancellation::new()).unwrap();
     assert!((second.modulus - 1.0).abs() < 1e-9, "{second:?}");
 }
 
@@ -299,6 +346,6 @@ fn no_solve_goes_on_once_cancelled() {
         let again = solve(&matrix, &space, None, &options(solver));
         assert_eq!(again.unwrap_err(), stopped);
     }
-    let second = second_eigenvalue(&matrix, &found, &cancellation);
+    let second = second_eigenvalue(&matrix, &space, &found, &cancellation);
     assert_eq!(second.unwrap_err(), stopped);
 }

@@ -114,7 +114,8 @@ fn one_thread_and_two_give_the_same_bits() {
     let run = |threads| {
         with_threads(threads, || {
             let multilevel = steady(&matrix, &space, None, MULTILEVEL, 1e-10);
-            let second = second_eigenvalue(&matrix, &multilevel, &Cancellation::new()).unwrap();
+            let second =
+                second_eigenvalue(&matrix, &space, &multilevel, &Cancellation::new()).unwrap();
             let mut options = Options::new(Solver::PowerIteration, 1e-10);
             options.max_iterations = 200;
             (
@@ -145,7 +146,7 @@ fn running_out_of_iterations_is_data() {
 fn the_second_eigenvalue_is_that_of_a_dense_solver() {
     let (matrix, space) = chain(50, 100, false);
     let found = steady(&matrix, &space, None, MULTILEVEL, 1e-12);
-    let second = second_eigenvalue(&matrix, &found, &Cancellation::new()).unwrap();
+    let second = second_eigenvalue(&matrix, &space, &found, &Cancellation::new()).unwrap();
     assert!(
         second.residual < 0.01 * (1.0 - second.modulus),
         "{second:?}"
@@ -164,7 +165,7 @@ fn the_second_eigenvalue_is_that_of_a_dense_solver() {
         .map(|z| z.norm())
         .collect();
     moduli.sort_by(|a, b| b.total_cmp(a));
-    let second = second_eigenvalue(&matrix, &found, &Cancellation::new()).unwrap();
+    let second = second_eigenvalue(&matrix, &space, &found, &Cancellation::new()).unwrap();
     assert!(
         (second.modulus - moduli[1]).abs() < 1e-6,
         "{second:?} {:?}",
