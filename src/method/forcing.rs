@@ -18,7 +18,8 @@ use crate::system::{Family, System};
 /// Distance of a phase from a part of the period that is rounding, in parts.
 const SAME_PHASE: f64 = 1e-9;
 
-/// Even parts of the period among which all phases are that are watched: a multiple of the fewest, and so many at least.
+/// Even parts of the period among which all phases are that are watched: a multiple of the fewest, and so many at
+/// least.
 ///
 /// # Errors
 /// [`MethodError::Phases`].

@@ -7,10 +7,10 @@
 //! `method.escape_limit` leaves within one relaxation time (from the second eigenvalue), the row says that there is no
 //! steady state.
 //!
-//! **What goes round is lumped last.** The chain of a forced system goes round among its phases, and smoothing damps
-//! nothing of that. Multilevel aggregation needs no damping there, since p = (I + P) p / 2 has the same sweeps as p = P p:
-//! it lumps cells of one phase only, until each phase is a single lump, and these are solved exactly. Power iteration
-//! takes the lazy chain, and the second eigenvalue leaves out all that goes round.
+//! **What goes round is lumped last.** The chain of a forced system goes round among its phases, and smoothing
+//! damps nothing of that. Multilevel aggregation needs no damping there, since p = (I + P) p / 2 has the same
+//! sweeps as p = P p: it lumps cells of one phase only, until each phase is a single lump, and these are solved
+//! exactly. Power iteration takes the lazy chain, and the second eigenvalue leaves out all that goes round.
 //!
 //! **Modes one by one.** The moments of a bounded state take from lower ones only, but for the force of the state,
 //! which is weak: in the basis of the moments the generator is nearly block lower triangular.

@@ -96,8 +96,9 @@ fn a_forced_linear_system_is_a_moving_normal_density_at_phases() {
     }
 }
 
-/// Flat cells of width h spread the density at every phase as they do without a forcing, to cell masses of a variance that
-/// is larger by (h²/6)/(e^{2Δt} - 1), and leave its mean: nothing spreads along the phase. With slopes that is gone.
+/// Flat cells of width h spread the density at every phase as they do without a forcing, to cell masses of a variance
+/// that is larger by (h²/6)/(e^{2Δt} - 1), and leave its mean: nothing spreads along the phase. With slopes that is
+/// gone.
 #[test]
 fn cells_widen_a_density_at_a_phase_as_they_do_without_forcing() {
     let (_, w, d) = FORCED;
@@ -127,10 +128,10 @@ fn cells_widen_a_density_at_a_phase_as_they_do_without_forcing() {
         };
         for (solution, own, other) in [(&flat, wide, narrow), (&sloped, narrow, wide)] {
             let ((near, noise), (far, _)) = (of(solution, own), of(solution, other));
-            // 0.027 of total variation lie between the two laws.
+            // About 0.025 of total variation lie between the two laws. Eight groups know the noise to a quarter.
             let words = format!("{phase}: {near} {far} {noise}");
-            assert!(near < 2.5 * noise + 0.002 && noise < 0.006, "{words}");
-            assert!(far > 0.018, "{words}");
+            assert!(near < 2.0 * noise + 0.002 && noise < 0.0075, "{words}");
+            assert!(far > 0.018 && far > 2.0 * near, "{words}");
         }
     }
     let law = width * width / 12.0 / step;

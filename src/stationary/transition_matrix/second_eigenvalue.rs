@@ -1,10 +1,10 @@
 //! Modulus of the second eigenvalue of a transition matrix: how fast the steady state is reached.
 //!
-//! Arnoldi's method on powers of P - λ₁ p 1ᵀ (Wielandt's deflation: as 1·p = 1, it replaces λ₁ by zero and
-//! keeps the other eigenvalues; without escape it is P on vectors of sum zero). In a chain that goes round among m phases
-//! the parts of p at each phase are taken from one to the next, which makes m eigenvalues of modulus λ₁: the same is
-//! done with each of these parts, and what is left tells how fast the state of any phase is reached. Powers, because the modes of an
-//! oscillator lie close to a circle, and their moduli draw apart.
+//! Arnoldi's method on powers of P - λ₁ p 1ᵀ (Wielandt's deflation: as 1·p = 1, it replaces λ₁ by zero and keeps
+//! the other eigenvalues; without escape it is P on vectors of sum zero). In a chain that goes round among m phases
+//! the parts of p at each phase are taken from one to the next, which makes m eigenvalues of modulus λ₁: the same
+//! is done with each of these parts, and what is left tells how fast the state of any phase is reached. Powers,
+//! because the modes of an oscillator lie close to a circle, and their moduli draw apart.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
