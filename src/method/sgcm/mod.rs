@@ -14,6 +14,7 @@ mod widening;
 
 pub(crate) use cost::SgcmCost;
 pub use options::{Correction, SgcmOptions};
+#[cfg(feature = "store")]
 pub(crate) use phases::FEWEST_PHASES;
 pub use slope_correction::{Corrected, solve_corrected};
 pub use source::SgcmSource;
