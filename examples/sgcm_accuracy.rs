@@ -261,7 +261,7 @@ fn map_steps(system: &dyn System, grids: usize) -> Result<(), AnyError> {
     Ok(())
 }
 
-/// Time steps of both integrators at one map step: what each takes away from the damping, and what comes of it.
+/// Time steps of three integrators at one map step: what each takes away from the damping, and what comes of it.
 fn integrators(system: &dyn System) -> Result<(), AnyError> {
     let trial = Trial::new(system, 50)?;
     let (euler, heun) = (Integrator::EulerMaruyama, Integrator::StochasticHeun);
@@ -271,11 +271,10 @@ fn integrators(system: &dyn System) -> Result<(), AnyError> {
     );
     println!("| --- | ---: | ---: | ---: | ---: | ---: |");
     let steps = [0.02, 0.01, 0.005, 0.0025].map(|step| (euler, step));
-    for (integrator, time_step) in
-        steps
-            .into_iter()
-            .chain([(heun, 0.2), (heun, automatic), (heun, 0.01)])
-    {
+    let split = [0.4, 0.2, 0.1].map(|step| (Integrator::Splitting, step));
+    let others = [(heun, 0.2), (heun, automatic), (heun, 0.01)];
+    let all = steps.into_iter().chain(others).chain(split);
+    for (integrator, time_step) in all {
         let run = trial.run(&SamplingOptions {
             map_step: 6.2,
             time_step,

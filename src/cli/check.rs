@@ -264,7 +264,12 @@ fn notes(spec: &Sweep) -> Vec<String> {
     notes
 }
 
-const SURFACE: &str = "the switching surface";
+/// Where a face belongs.
+#[derive(Clone, Copy, PartialEq)]
+enum FaceOn {
+    Surface,
+    Centre,
+}
 
 /// Surfaces and centres of symmetry that lie inside a cell.
 fn misplaced_faces(spec: &Sweep) -> Vec<String> {
@@ -273,11 +278,11 @@ fn misplaced_faces(spec: &Sweep) -> Vec<String> {
     let Ok(system) = family.at(family.ends().0) else {
         return Vec::new();
     };
-    let mut wanted: Vec<(usize, f64, &str)> = Vec::new();
+    let mut wanted: Vec<(usize, f64, FaceOn)> = Vec::new();
     let systems = family.along().unwrap_or_default();
     for &surface in &system.facts().switching_surfaces {
         if wants_face(&systems, surface, spec.problem.space()) {
-            wanted.push((surface.axis, surface.at, SURFACE));
+            wanted.push((surface.axis, surface.at, FaceOn::Surface));
         }
     }
     if let Some(symmetry) = &system.facts().symmetry {
@@ -287,7 +292,7 @@ fn misplaced_faces(spec: &Sweep) -> Vec<String> {
                 .iter()
                 .any(|&(other, at, _)| other == axis && at == centre);
             if reflected && !known {
-                wanted.push((axis, centre, "the centre of symmetry"));
+                wanted.push((axis, centre, FaceOn::Centre));
             }
         }
     }
@@ -299,7 +304,7 @@ fn misplaced_faces(spec: &Sweep) -> Vec<String> {
         if !axis.is_modes() && axis.is_inside_cell(at) {
             let (name, count) = (family.axis(index), axis.count());
             // Faces lie on surfaces that stay where they are.
-            let remedy = if what == SURFACE && !axis.is_closed() {
+            let remedy = if what == FaceOn::Surface && !axis.is_closed() {
                 "faces do not follow it along the sweep, and what happens at it is told in a band; write the equations \
                  in the distance from it, so that it stays"
                     .to_owned()
@@ -308,6 +313,10 @@ fn misplaced_faces(spec: &Sweep) -> Vec<String> {
                     "give a range with {at} in its middle and an even `cells.{name}.count` (now {count}), or grade the \
                      axis toward it"
                 )
+            };
+            let what = match what {
+                FaceOn::Surface => "the switching surface",
+                FaceOn::Centre => "the centre of symmetry",
             };
             notes.push(format!("{what} {name} = {at} lies inside a cell: {remedy}"));
         }

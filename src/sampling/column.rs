@@ -4,7 +4,7 @@ use super::SamplingOptions;
 use super::integrator::Stepper;
 use super::lookup::CellLookup;
 use super::phase::PhaseStep;
-use super::random::{NormalStream, StreamKey};
+use super::random::{NormalStream, OnLines, StreamKey};
 use super::starts::StartLattice;
 use crate::MAX_DIMENSION;
 use crate::cancellation::{Cancellation, Cancelled};
@@ -146,7 +146,8 @@ impl<'a> ColumnSampler<'a> {
         let mut moments = vec![EndMoments::default(); if keeps { dimension } else { 0 }];
         let mut offsets = [[0.0; LANES]; MAX_DIMENSION];
         let mut spreading = [0.0; MAX_DIMENSION];
-        let mut states = [[0.0; LANES]; MAX_DIMENSION];
+        let mut states = OnLines([[0.0; LANES]; MAX_DIMENSION]);
+        let states = &mut states.0[..dimension];
         let mut group = 0;
         for block in 0..self.options.samples.div_ceil(LANES) {
             let first = block * LANES;
@@ -158,25 +159,24 @@ impl<'a> ColumnSampler<'a> {
                 }
                 *of_lane = group;
             }
-            self.place_starts(cell, first, &groups, &mut states[..dimension], &mut offsets);
+            self.place_starts(cell, first, &groups, states, &mut offsets);
             let mut stream = NormalStream::new(self.key(cell, block as u64));
-            self.stepper.enter(&mut states[..dimension]);
-            self.stepper
-                .advance(&mut states[..dimension], 0, self.steps, &mut stream)?;
-            self.stepper.leave(&mut states[..dimension]);
+            self.stepper.enter(states);
+            self.stepper.advance(states, 0, self.steps, &mut stream)?;
+            self.stepper.leave(states);
             if let Some(phase) = &self.phase {
                 let end = phase.end(self.space.position(cell, phase.axis));
-                phase.put(&mut states[..dimension], self.space, end);
+                phase.put(states, self.space, end);
             }
-            self.lookup.find(&states[..dimension], &mut found);
+            self.lookup.find(states, &mut found);
             for (lane, &cell) in found.iter().enumerate().take(count) {
-                let end = self.end(cell, lane, &states[..dimension], &mut spreading);
+                let end = self.end(cell, lane, states, &mut spreading);
                 ends.push(u64::from(end) << 32 | (first + lane) as u64);
                 if keeps {
                     let start = offsets.map(|axis: Lanes| axis[lane] as f32);
                     starts.push(start);
                     if end != SINK {
-                        add_moments(&mut moments, &states[..dimension], lane, &start);
+                        add_moments(&mut moments, states, lane, &start);
                     }
                 }
             }

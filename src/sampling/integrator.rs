@@ -11,7 +11,7 @@ use multiversion::multiversion;
 use splitting::rows_of;
 pub(crate) use splitting::{Position, positions};
 
-use super::random::NormalStream;
+use super::random::{NormalStream, OnLines};
 use crate::MAX_DIMENSION;
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::system::{LANES, Lanes, Noise, System};
@@ -211,10 +211,10 @@ impl<'a> Stepper<'a> {
         let channels = self.noise.len();
         // Whole pairs of rows, so that no normal is dropped but at the very end.
         let chunk = (ROWS / channels.max(1)).max(2) & !1;
-        let mut rows = [[0.0; LANES]; ROWS];
+        let mut rows = OnLines([[0.0; LANES]; ROWS]);
         let mut more = Vec::new();
         let buffer: &mut [Lanes] = if chunk * channels <= ROWS {
-            &mut rows
+            &mut rows.0
         } else {
             more.resize(chunk * channels, [0.0; LANES]);
             &mut more
@@ -362,6 +362,7 @@ impl<'a> Stepper<'a> {
 }
 
 /// Room for what a step works out, a row an axis.
+#[repr(align(64))]
 struct Work {
     /// Zero on axes without noise.
     increments: [Lanes; MAX_DIMENSION],

@@ -14,6 +14,10 @@ use crate::system::{LANES, Lanes};
 /// One 64-bit word of the generators' states.
 type Words = [u64; LANES];
 
+/// Rows that begin where lines of the cache do: a register that is loaded across two lines takes twice as long.
+#[repr(align(64))]
+pub(super) struct OnLines<T>(pub(super) T);
+
 /// What a stream is keyed by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct StreamKey {
@@ -52,27 +56,27 @@ pub(crate) fn unit(word: u64) -> f64 {
 
 /// Independent standard normals in every lane.
 pub(crate) struct NormalStream {
-    state: [Words; 4],
+    state: OnLines<[Words; 4]>,
 }
 
 impl NormalStream {
     /// The stream of a key.
     pub(crate) fn new(key: StreamKey) -> Self {
-        let mut state = [[0; LANES]; 4];
-        seed_lanes(key.word(), &mut state);
+        let mut state = OnLines([[0; LANES]; 4]);
+        seed_lanes(key.word(), &mut state.0);
         Self { state }
     }
 
     /// Fills rows of standard normals. Numbers come in pairs of rows: after an odd number of rows the second
     /// half of the last pair is dropped.
     pub(crate) fn fill(&mut self, normals: &mut [Lanes]) {
-        fill(&mut self.state, normals);
+        fill(&mut self.state.0, normals);
     }
 
     /// Fills rows of four-point numbers, which serve for laws as normals do. A word makes twelve rows; what is left of
     /// the last one is dropped.
     pub(crate) fn fill_for_laws(&mut self, rows: &mut [Lanes]) {
-        fill_for_laws(&mut self.state, rows);
+        fill_for_laws(&mut self.state.0, rows);
     }
 }
 
@@ -187,7 +191,10 @@ mod tests {
     fn the_vector_code_gives_the_bits_of_the_baseline() {
         let normals = sample(key(3, 14, 15), 101);
         let mut baseline = vec![[0.0; LANES]; 101];
-        fill_rows(&mut NormalStream::new(key(3, 14, 15)).state, &mut baseline);
+        fill_rows(
+            &mut NormalStream::new(key(3, 14, 15)).state.0,
+            &mut baseline,
+        );
         for (left, right) in normals.iter().flatten().zip(baseline.iter().flatten()) {
             assert_eq!(left.to_bits(), right.to_bits());
         }

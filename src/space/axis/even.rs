@@ -41,63 +41,67 @@ fn bent(pieces: &[Piece]) -> Option<Vec<Piece>> {
     if !rest.iter().all(is_common) || rest.iter().all(is_even) {
         return None;
     }
-    let (from, to) = (first.from, pieces.last()?.to);
-    let width = to - from;
-    // A bend about the middle of each stretch but the longest, as wide as the stretch.
+    let (scale, bends) = bends(first, pieces)?;
+    let bulk = scale * first.bulk;
+    let mut terms: Vec<Term> = Vec::new();
+    let own = first.terms.iter();
+    let own = own.map(|&(size, at, wide)| (scale * size, at, wide));
+    for term in own.chain(bends) {
+        let is_same = |one: &&mut Term| one.1 == term.1 && one.2 == term.2;
+        match terms.iter_mut().find(is_same) {
+            Some(same) => same.0 += term.0,
+            None => terms.push(term),
+        }
+    }
+    let made = pieces.iter().map(|one| {
+        let (ends, cells) = ((one.from, one.to), (one.first_cell, one.cells));
+        Piece::new(ends, cells, bulk, &terms)
+    });
+    is_gentle(first, pieces, (bulk, &terms)).then(|| made.collect())
+}
+
+/// A bend of the law of widths: its size, its middle and its width.
+type Term = (f64, f64, f64);
+
+/// What the law of the first stretch is multiplied by, and bends about the middle of each stretch but the longest, as
+/// wide as the stretch, with which every stretch holds its cells. `None` where there are no such bends.
+fn bends(first: &Piece, pieces: &[Piece]) -> Option<(f64, Vec<Term>)> {
     let length = |piece: &Piece| piece.to - piece.from;
     let longest = pieces.iter().map(length).fold(0.0, f64::max);
     let longest = pieces.iter().position(|piece| length(piece) == longest)?;
     let others = pieces.iter().enumerate().filter(|one| one.0 != longest);
     let bend = |piece: &Piece| (1.0, 0.5 * (piece.from + piece.to), length(piece));
-    let bends: Vec<(f64, f64, f64)> = others.map(|(_, piece)| bend(piece)).collect();
-    let law = |x: f64| Piece::raw(first.bulk, &first.terms, x);
+    let bends: Vec<Term> = others.map(|(_, piece)| bend(piece)).collect();
     let rows = pieces.len();
     let held = DMatrix::from_fn(rows, rows, |piece, unknown| {
         let of = |x: f64| match unknown.checked_sub(1) {
-            None => law(x),
+            None => Piece::raw(first.bulk, &first.terms, x),
             Some(bend) => Piece::raw(0.0, &bends[bend..=bend], x),
         };
         of(pieces[piece].to) - of(pieces[piece].from)
     });
     let wanted = DVector::from_fn(rows, |piece, _| pieces[piece].cells as f64);
     let found = held.lu().solve(&wanted)?;
-    let scale = found[0];
-    let mut terms: Vec<(f64, f64, f64)> = Vec::new();
-    let own = first
-        .terms
-        .iter()
-        .map(|&(size, at, wide)| (scale * size, at, wide));
-    let bends = bends.iter().zip(found.iter().skip(1));
+    let sizes = found.iter().skip(1);
+    let bends = bends.iter().zip(sizes);
     let bends = bends.map(|(&(_, at, wide), &size)| (size, at, wide));
-    for term in own.chain(bends) {
-        match terms
-            .iter_mut()
-            .find(|one| one.1 == term.1 && one.2 == term.2)
-        {
-            Some(same) => same.0 += term.0,
-            None => terms.push(term),
-        }
-    }
-    let bulk = scale * first.bulk;
-    let made = pieces.iter().map(|one| {
-        Piece::new(
-            (one.from, one.to),
-            (one.first_cell, one.cells),
-            bulk,
-            &terms,
-        )
-    });
-    let made: Vec<Piece> = made.collect();
+    Some((found[0], bends.collect()))
+}
+
+/// Whether a bent law makes no cell much wider or narrower than the law of the first stretch does with as many cells.
+fn is_gentle(first: &Piece, pieces: &[Piece], (bulk, terms): (f64, &[Term])) -> bool {
+    let from = first.from;
+    let to = pieces.last().map_or(first.to, |last| last.to);
     let mut places: Vec<f64> = pieces.iter().map(|one| one.from).collect();
-    places.extend((0..=LOOKED_AT).map(|k| from + width * k as f64 / LOOKED_AT as f64));
-    let total: f64 = made.iter().map(|one| one.cells as f64).sum();
+    places.extend((0..=LOOKED_AT).map(|k| from + (to - from) * k as f64 / LOOKED_AT as f64));
+    let total: f64 = pieces.iter().map(|one| one.cells as f64).sum();
+    let law = |x: f64| Piece::raw(first.bulk, &first.terms, x);
     let even_law = total / (law(to) - law(from));
-    let is_gentle = |&x: &f64| {
-        let density = |bulk: f64, terms: &[(f64, f64, f64)]| Piece::density(bulk, terms, x);
-        let share = density(bulk, &terms) / (even_law * density(first.bulk, &first.terms));
+    places.iter().all(|&x| {
+        let own = even_law * Piece::density(first.bulk, &first.terms, x);
+        let share = Piece::density(bulk, terms, x) / own;
         (MOST.recip()..=MOST).contains(&share) || share.is_nan()
-    };
-    places.iter().all(is_gentle).then_some(made)
+    })
 }
 
 #[cfg(test)]
