@@ -67,6 +67,7 @@ pub fn starting_files() -> &'static [StartingFile] {
         "forced_duffing",
         "mathieu",
         "pendulum",
+        "phase_locked_loop",
     )
 }
 
