@@ -235,15 +235,16 @@ fn a_pendulum_turns_with_its_known_velocity() {
 fn a_phase_locked_loop_locks_falsely_from_a_half_on_and_slips_as_lifson_and_jackson_say() {
     let found = run("phase_locked_loop", "");
     assert_located(&found, "phi", 0.5, 1e-5);
-    // D over the means of e^(V/D) and e^(-V/D) over a turn, with V = -cos φ - (b/2) cos 2φ, D = 0.3 and b = 0.2.
+    // D over the means of e^(V/D) and e^(-V/D) over a turn, with V = -cos ψ - (b/2) cos 2ψ, D = 1 and b = 0.2, where
+    // ψ is what the phase is off from the lock.
     let mean = |sign: f64| {
         let turn = (0..400).map(|k| std::f64::consts::TAU * f64::from(k) / 400.0);
-        let potential = turn.map(|phi| -phi.cos() - 0.1 * (2.0 * phi).cos());
-        potential.map(|v| (sign * v / 0.3).exp()).sum::<f64>() / 400.0
+        let potential = turn.map(|off| -off.cos() - 0.1 * (2.0 * off).cos());
+        potential.map(|v| (sign * v).exp()).sum::<f64>() / 400.0
     };
     let (_, lowest) = solved(text("phase_locked_loop"), "sweep.points=2", Some(0.2));
     let [value, error] = measured(&lowest, "diffusion_phi");
-    assert_holds([value, error], 0.3 / (mean(1.0) * mean(-1.0)), 1e-6);
+    assert_holds([value, error], 1.0 / (mean(1.0) * mean(-1.0)), 1e-6);
 }
 
 /// Derivatives of E x², E xy and E y² of Mathieu's oscillator of the gallery at a time.
