@@ -173,21 +173,11 @@ impl Histogram {
         sink.saturating_sub(self.gone)
     }
 
-    /// Counts one look at every trajectory of a batch that `stepper` advances, at this part of the period.
-    pub(super) fn look(
-        &mut self,
-        (lookup, stepper): (&CellLookup, &Stepper<'_>),
-        batch: &Batch,
-        part: usize,
-    ) {
-        let first = part * batch.states.len();
-        let sums = &mut self.sums[first..first + batch.states.len()];
-        if stepper.splits() {
-            let mut seen = batch.states.clone();
-            stepper.leave(&mut seen);
-            return count(lookup, &seen, &mut self.counts, sums);
-        }
-        count(lookup, &batch.states, &mut self.counts, sums);
+    /// Counts one look at the states of a batch, at this part of the period.
+    pub(super) fn look(&mut self, lookup: &CellLookup, states: &[Lanes], part: usize) {
+        let first = part * states.len();
+        let sums = &mut self.sums[first..first + states.len()];
+        count(lookup, states, &mut self.counts, sums);
     }
 
     /// Tells that looks since the last call were also at this many trajectories that had run away before.

@@ -22,7 +22,7 @@ type Levels = (Lanes, Lanes);
 
 /// What was counted on a trajectory.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Tally {
+pub(super) struct TransitionCounts {
     /// How often it came to the second region from the first one.
     pub(super) transitions: f64,
     /// Time that it was on its way then.
@@ -33,7 +33,7 @@ pub(super) struct Tally {
     pub(super) time: f64,
 }
 
-impl Tally {
+impl TransitionCounts {
     /// This one and so many times another.
     pub(super) fn plus(&self, times: f64, other: &Self) -> Self {
         Self {
@@ -71,14 +71,14 @@ struct Meeting {
 }
 
 /// Levels of a region at both ends of a step, over the strength of the noise that acts on them where there is any.
-struct Ends {
+struct StepLevels {
     before: f64,
     after: f64,
     /// The variance that noise gives over the step; zero without.
     variance: f64,
 }
 
-impl Ends {
+impl StepLevels {
     fn new((level, speed): (f64, f64), (next, next_speed): (f64, f64), time_step: f64) -> Self {
         let is_noisy = speed > 0.0 && next_speed > 0.0;
         let (units, variance) = match is_noisy {
@@ -132,7 +132,7 @@ pub(super) struct Crossings<'a> {
     came: Lanes,
     /// Since when a trajectory counts; infinite where it is not known yet in which region it was last.
     begun: Lanes,
-    tallies: [Tally; LANES],
+    tallies: [TransitionCounts; LANES],
     steps: u64,
 }
 
@@ -154,7 +154,7 @@ impl<'a> Crossings<'a> {
             left: [0.0; LANES],
             came: [0.0; LANES],
             begun: [f64::INFINITY; LANES],
-            tallies: [Tally::default(); LANES],
+            tallies: [TransitionCounts::default(); LANES],
             steps: 0,
         }
     }
@@ -165,7 +165,7 @@ impl<'a> Crossings<'a> {
 
     /// Forgets what was counted.
     pub(super) fn begin(&mut self) {
-        self.tallies = [Tally::default(); LANES];
+        self.tallies = [TransitionCounts::default(); LANES];
         let now = self.now();
         let known = self.begun.iter_mut().filter(|begun| begun.is_finite());
         known.for_each(|begun| *begun = now);
@@ -254,7 +254,7 @@ impl<'a> Crossings<'a> {
             let (first, last) = (0.0, 1.0);
             return Some(Meeting { first, last });
         }
-        let ends = Ends::new(at(&before[region]), at(&self.seen[region]), self.time_step);
+        let ends = StepLevels::new(at(&before[region]), at(&self.seen[region]), self.time_step);
         let (unmet, drawn) = (&mut self.unmet[region][lane], &mut self.drawn[region][lane]);
         match (ends.before < 0.0, ends.after < 0.0) {
             (true, true) => Some(Meeting {
@@ -283,7 +283,7 @@ impl<'a> Crossings<'a> {
     }
 
     /// What was counted up to now.
-    pub(super) fn tallies(&self) -> [Tally; LANES] {
+    pub(super) fn tallies(&self) -> [TransitionCounts; LANES] {
         let now = self.now();
         std::array::from_fn(|lane| {
             let mut tally = self.tallies[lane];

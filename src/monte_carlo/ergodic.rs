@@ -285,10 +285,11 @@ impl Worker<'_> {
     ) {
         turning.count(batch);
         turning.look(batch, &mut block.advances);
+        let mut seen = self.stepper.seen(&batch.states);
         if let Some(phases) = &self.phases {
-            phases.set_to_cell(&mut batch.states, number);
+            phases.set_to_cell(seen.to_mut(), number);
         }
-        block.look((self.lookup, &self.stepper), batch, number % self.parts());
+        block.look(self.lookup, &seen, number % self.parts());
         if let Some(phases) = &self.phases {
             phases.set(&mut batch.states, number);
         }

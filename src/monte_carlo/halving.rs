@@ -242,12 +242,11 @@ impl<'a> Comparison<'a> {
             self.cancellation.check()?;
             self.advance(&mut coarse, &mut fine, look * LOOK, &mut stream);
             if look >= self.settle {
-                let (mut seen, mut seen_fine) = (coarse.clone(), fine.clone());
-                self.coarse.leave(&mut seen);
-                self.fine.leave(&mut seen_fine);
+                let seen = [self.coarse.seen(&coarse), self.fine.seen(&fine)];
                 for (lane, averages) in averages.iter_mut().enumerate() {
-                    self.add(&seen, lane, averages, 0);
-                    self.add(&seen_fine, lane, averages, 1);
+                    for (path, states) in seen.iter().enumerate() {
+                        self.add(states, lane, averages, path);
+                    }
                 }
             }
         }

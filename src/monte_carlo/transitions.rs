@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::MonteCarloError;
 use super::batch::{Limits, Purpose, key};
-use super::crossings::{Chances, Crossings, Tally};
+use super::crossings::{Chances, Crossings, TransitionCounts};
 use super::ergodic::Starts;
 use super::estimate::BLOCKS;
 use super::exit_times::{ExitNumber, differences, jackknife};
@@ -53,7 +53,7 @@ pub struct TransitionRun {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transitions {
     /// Of each pair of trajectories with the step, and with half of it.
-    tallies: Vec<[Tally; 2]>,
+    tallies: Vec<[TransitionCounts; 2]>,
     runaways: usize,
     steps: f64,
 }
@@ -83,11 +83,11 @@ impl Transitions {
     ///
     /// The error of sampling is that of a jackknife that leaves out one trajectory at a time.
     pub fn numbers(&self) -> [ExitNumber; 3] {
-        let none = Tally::default();
+        let none = TransitionCounts::default();
         let totals = self.tallies.iter().fold([none; 2], |sums, pair| {
             [0, 1].map(|with| sums[with].plus(1.0, &pair[with]))
         });
-        let of = |[coarse, fine]: [Tally; 2]| {
+        let of = |[coarse, fine]: [TransitionCounts; 2]| {
             let fine = numbers_of(&fine);
             (differences(&numbers_of(&coarse), &fine), fine)
         };
@@ -105,7 +105,7 @@ impl Transitions {
 }
 
 /// Flux, rate and mean time on the way.
-fn numbers_of(tally: &Tally) -> Vec<f64> {
+fn numbers_of(tally: &TransitionCounts) -> Vec<f64> {
     vec![
         tally.transitions / tally.time,
         tally.transitions / tally.from_last,
@@ -256,7 +256,7 @@ impl<'a> Pair<'a> {
         self.walks.iter_mut().for_each(Crossings::begin);
     }
 
-    fn tallies(&self) -> Vec<[Tally; 2]> {
+    fn tallies(&self) -> Vec<[TransitionCounts; 2]> {
         let [coarse, fine] = [0, 1].map(|with| self.walks[with].tallies());
         coarse.into_iter().zip(fine).map(|(a, b)| [a, b]).collect()
     }

@@ -163,20 +163,20 @@ impl<'a> ColumnSampler<'a> {
             let mut stream = NormalStream::new(self.key(cell, block as u64));
             self.stepper.enter(states);
             self.stepper.advance(states, 0, self.steps, &mut stream)?;
-            self.stepper.leave(states);
+            let mut seen = self.stepper.seen(states);
             if let Some(phase) = &self.phase {
                 let end = phase.end(self.space.position(cell, phase.axis));
-                phase.put(states, self.space, end);
+                phase.put(seen.to_mut(), self.space, end);
             }
-            self.lookup.find(states, &mut found);
+            self.lookup.find(&seen, &mut found);
             for (lane, &cell) in found.iter().enumerate().take(count) {
-                let end = self.end(cell, lane, states, &mut spreading);
+                let end = self.end(cell, lane, &seen, &mut spreading);
                 ends.push(u64::from(end) << 32 | (first + lane) as u64);
                 if keeps {
                     let start = offsets.map(|axis: Lanes| axis[lane] as f32);
                     starts.push(start);
                     if end != SINK {
-                        add_moments(&mut moments, states, lane, &start);
+                        add_moments(&mut moments, &seen, lane, &start);
                     }
                 }
             }

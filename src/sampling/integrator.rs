@@ -219,7 +219,7 @@ impl<'a> Stepper<'a> {
             more.resize(chunk * channels, [0.0; LANES]);
             &mut more
         };
-        let (mut done, mut work) = (0, Work::new());
+        let (mut done, mut scratch) = (0, Scratch::new());
         while done < steps {
             self.cancellation.check()?;
             let count = chunk.min(steps - done);
@@ -228,7 +228,7 @@ impl<'a> Stepper<'a> {
                 true => stream.fill_for_laws(normals),
                 false => stream.fill(normals),
             }
-            self.work_through(states, first + done, count, normals, &mut work);
+            self.work_through(states, first + done, count, normals, &mut scratch);
             done += count;
         }
         Ok(())
@@ -243,7 +243,7 @@ impl<'a> Stepper<'a> {
         steps: usize,
         normals: &[Lanes],
     ) {
-        self.work_through(states, first, steps, normals, &mut Work::new());
+        self.work_through(states, first, steps, normals, &mut Scratch::new());
     }
 
     fn work_through(
@@ -252,20 +252,27 @@ impl<'a> Stepper<'a> {
         first: usize,
         steps: usize,
         normals: &[Lanes],
-        work: &mut Work,
+        scratch: &mut Scratch,
     ) {
         match self.integrator {
-            Integrator::EulerMaruyama => euler_maruyama(self, states, first, steps, normals, work),
-            _ => heun(self, states, first, steps, normals, work),
+            Integrator::EulerMaruyama => {
+                euler_maruyama(self, states, first, steps, normals, scratch)
+            }
+            _ => heun(self, states, first, steps, normals, scratch),
         }
     }
 
-    /// Folds states back between the walls, and into the turn.
+    /// Folds states back between the walls.
     #[inline(always)]
-    fn fold(&self, states: &mut [Lanes]) {
+    fn reflect(&self, states: &mut [Lanes]) {
         for mirror in &self.mirrors {
             mirror.fold(states);
         }
+    }
+
+    /// Folds states back into the turn.
+    #[inline(always)]
+    fn turn_back(&self, states: &mut [Lanes]) {
         for turn in &self.turns {
             turn.fold(states);
         }
@@ -363,14 +370,14 @@ impl<'a> Stepper<'a> {
 
 /// Room for what a step works out, a row an axis.
 #[repr(align(64))]
-struct Work {
+struct Scratch {
     /// Zero on axes without noise.
     increments: [Lanes; MAX_DIMENSION],
     start: [Lanes; MAX_DIMENSION],
     end: [Lanes; MAX_DIMENSION],
 }
 
-impl Work {
+impl Scratch {
     fn new() -> Self {
         let rows = [[0.0; LANES]; MAX_DIMENSION];
         Self {
@@ -389,15 +396,15 @@ fn heun(
     first: usize,
     steps: usize,
     normals: &[Lanes],
-    work: &mut Work,
+    scratch: &mut Scratch,
 ) {
     let (dimension, channels) = (states.len(), stepper.noise.len());
     let (step, half) = (stepper.time_step, 0.5 * stepper.time_step);
-    let Work {
+    let Scratch {
         increments,
         start,
         end,
-    } = work;
+    } = scratch;
     let (start, end) = (&mut start[..dimension], &mut end[..dimension]);
     stepper.move_positions(states, half);
     for number in 0..steps {
@@ -418,8 +425,10 @@ fn heun(
                 states[axis][lane] += half * (end[axis][lane] - start[axis][lane]);
             }
         }
+        // A velocity at a wall is turned round before it moves anything.
+        stepper.reflect(states);
         stepper.move_positions(states, if number + 1 < steps { step } else { half });
-        stepper.fold(states);
+        stepper.turn_back(states);
     }
 }
 
@@ -430,13 +439,13 @@ fn euler_maruyama(
     first: usize,
     steps: usize,
     normals: &[Lanes],
-    work: &mut Work,
+    scratch: &mut Scratch,
 ) {
     let (dimension, channels) = (states.len(), stepper.noise.len());
     let step = stepper.time_step;
-    let Work {
+    let Scratch {
         increments, start, ..
-    } = work;
+    } = scratch;
     let start = &mut start[..dimension];
     for number in 0..steps {
         let time = (first + number) as f64 * step;
@@ -444,7 +453,8 @@ fn euler_maruyama(
         stepper.increments(time, states, normals, increments);
         stepper.system.drift(time, states, start);
         stepper.predict(states, start, normals, increments);
-        stepper.fold(states);
+        stepper.reflect(states);
+        stepper.turn_back(states);
     }
 }
 

@@ -9,6 +9,8 @@
 //! steps, by what is called a postprocessor (G. Vilmart, SIAM J. Sci. Comput. 37, A201 (2015)): with positions x, the
 //! rest y and drifts F, it takes y to y + (dt²/8) ∂F_y/∂x F_x.
 
+use std::borrow::Cow;
+
 use super::Stepper;
 use crate::MAX_DIMENSION;
 use crate::system::{LANES, Lanes, System};
@@ -111,21 +113,16 @@ fn line(coordinate: &Lanes, drift: &Lanes) -> Option<(f64, f64)> {
 const TURNS: usize = 4;
 
 impl Stepper<'_> {
-    /// Whether there are positions that move apart.
-    pub(crate) fn splits(&self) -> bool {
-        !self.positions.is_empty()
-    }
-
-    /// Takes states of the steps to states of the process.
-    pub(crate) fn leave(&self, states: &mut [Lanes]) {
+    /// States of the process at states of the steps, which they are themselves where nothing moves apart.
+    pub(crate) fn seen<'s>(&self, states: &'s [Lanes]) -> Cow<'s, [Lanes]> {
         if self.positions.is_empty() {
-            return;
+            return Cow::Borrowed(states);
         }
-        let left = rows_of(states);
-        self.shifts(&left[..states.len()], |axis, lane, shift| {
-            states[axis][lane] += shift
-        });
-        self.fold(states);
+        let mut seen = states.to_vec();
+        self.shifts(states, |axis, lane, shift| seen[axis][lane] += shift);
+        self.reflect(&mut seen);
+        self.turn_back(&mut seen);
+        Cow::Owned(seen)
     }
 
     /// Takes states of the process to states of the steps.

@@ -191,8 +191,8 @@ fn split_bias(step: f64) -> [[f64; 2]; 2] {
     let exact = [0.5 / (damping * omega * omega), 0.5 / damping];
     let system = Linear::oscillator(omega, damping, 1.0);
     let stepper = Stepper::new(&system, Integrator::Splitting, step, &Cancellation::new());
-    let mut unit = [[1.0; LANES], [1.0; LANES]];
-    stepper.leave(&mut unit);
+    let unit = [[1.0; LANES], [1.0; LANES]];
+    let unit = stepper.seen(&unit);
     let seen = [xx * unit[0][0].powi(2), yy * unit[1][0].powi(2)];
     [[xx, yy], seen].map(|of| [0, 1].map(|axis| of[axis] / exact[axis] - 1.0))
 }
@@ -233,8 +233,7 @@ fn a_state_comes_back_from_the_steps_and_an_undamped_oscillator_keeps_its_energy
     let energy = |states: &[Lanes]| states[0][0].powi(2) * omega * omega + states[1][0].powi(2);
     let mut largest: f64 = 0.0;
     for turn in 0..10_000 {
-        let mut seen = states;
-        stepper.leave(&mut seen);
+        let seen = stepper.seen(&states);
         if turn == 0 {
             let off = (seen[1][0] - start[1][0]).abs();
             assert!(off < 1e-7 && seen[0] == start[0], "{off}");
@@ -411,9 +410,8 @@ fn duffing_bias(stiffness: f64, step: f64) -> [f64; 2] {
     let (looks, mut sums) = (80_000, [0.0; 2]);
     for _ in 0..looks {
         stepper.advance(&mut states, 0, each, &mut stream).unwrap();
-        let mut seen = states;
-        stepper.leave(&mut seen);
-        for (sum, lanes) in sums.iter_mut().zip(&seen) {
+        let seen = stepper.seen(&states);
+        for (sum, lanes) in sums.iter_mut().zip(seen.iter()) {
             *sum += lanes.iter().map(|x| x * x).sum::<f64>();
         }
     }
