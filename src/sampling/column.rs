@@ -22,12 +22,13 @@ const START_BLOCK: u64 = 1 << 32;
 pub(super) struct Column {
     /// Distinct end cells, ascending; [`SINK`] comes last.
     pub(super) destinations: Vec<u32>,
-    /// What all samples show.
-    pub(super) all: Shares,
-    /// What the samples of each group show, one group after another.
-    by_group: Shares,
-    /// End of each group's stretch of `by_group`.
-    group_ends: Vec<u32>,
+    /// Samples in each of them.
+    pub(super) counts: Vec<u32>,
+    /// Σ over the samples in each of them of where they started in their cell, a value an axis, from -½ to ½ of its
+    /// width. Empty unless starts are kept.
+    pub(super) starts: Vec<f32>,
+    /// The same of the samples of each group.
+    pub(super) groups: Vec<Shares>,
     /// Number of samples.
     pub(super) samples: usize,
     /// Moments of the end points of the samples that did not end in the sink; empty unless starts are kept.
@@ -49,40 +50,28 @@ pub(super) struct EndMoments {
     pub(super) count: f64,
 }
 
-/// Samples by the end cells that they share.
+/// Samples of a group by the end cells that they share.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Shares {
     /// Place among the column's end cells, ascending, and number of samples.
     pub(super) counts: Vec<(u32, u32)>,
-    /// Σ over these samples of where they started in their cell, a value an axis, from -½ to ½ of its width; in the
-    /// order of `counts`. Empty unless starts are kept.
+    /// As those of the column, in the order of `counts`.
     pub(super) starts: Vec<f32>,
 }
 
 impl Column {
-    /// The counts of one group, with their numbers in `starts`, and these.
-    pub(super) fn group(&self, group: usize) -> impl Iterator<Item = (usize, (u32, u32))> {
-        let end = |group: usize| self.group_ends[group] as usize;
-        let first = if group == 0 { 0 } else { end(group - 1) };
-        let counts = &self.by_group.counts[first..end(group)];
-        (first..).zip(counts.iter().copied())
-    }
-
-    /// Where the samples of a count of a group started, all together.
-    pub(super) fn group_starts(&self, number: usize, dimension: usize) -> &[f32] {
-        &self.by_group.starts[number * dimension..(number + 1) * dimension]
-    }
-
     /// Whether it is known where samples started.
     pub(super) fn keeps_starts(&self) -> bool {
-        !self.all.starts.is_empty()
+        !self.starts.is_empty()
     }
 
     /// Forgets where samples started.
     #[cfg(test)]
     pub(super) fn forget_starts(&mut self) {
-        self.all.starts.clear();
-        self.by_group.starts.clear();
+        self.starts.clear();
+        self.groups
+            .iter_mut()
+            .for_each(|shares| shares.starts.clear());
         self.ends.clear();
     }
 }
@@ -261,15 +250,15 @@ impl<'a> ColumnSampler<'a> {
         for sum in &mut spreading {
             *sum /= inside.max(1) as f64;
         }
-        let groups = self.group_starts.len() - 1;
-        let (mut destinations, mut all) = (Vec::new(), Shares::default());
-        let mut of_groups = vec![Shares::default(); groups];
+        let (mut destinations, mut counts, mut all_starts) = (Vec::new(), Vec::new(), Vec::new());
+        let mut groups = vec![Shares::default(); self.group_starts.len() - 1];
         for of_cell in ends.chunk_by(|a, b| cell_of(a) == cell_of(b)) {
             let place = destinations.len() as u32;
             destinations.push(cell_of(&of_cell[0]));
+            counts.push(of_cell.len() as u32);
             let (mut rest, mut sums) = (of_cell, [0.0; MAX_DIMENSION]);
             // In this order samples of a cell are ordered by their groups too.
-            for (group, shares) in of_groups.iter_mut().enumerate() {
+            for (group, shares) in groups.iter_mut().enumerate() {
                 if rest.is_empty() {
                     break;
                 }
@@ -282,23 +271,19 @@ impl<'a> ColumnSampler<'a> {
                     self.add_share(shares, (place, count as u32), started, &mut sums);
                 }
             }
-            all.counts.push((place, of_cell.len() as u32));
             if !starts.is_empty() {
-                all.starts.extend(&sums[..self.space.dimension()]);
+                all_starts.extend(&sums[..self.space.dimension()]);
             }
         }
-        let mut by_group = Shares::default();
-        let mut group_ends = Vec::with_capacity(groups);
-        for shares in of_groups {
-            by_group.counts.extend(shares.counts);
-            by_group.starts.extend(shares.starts);
-            group_ends.push(by_group.counts.len() as u32);
+        for shares in &mut groups {
+            shares.counts.shrink_to_fit();
+            shares.starts.shrink_to_fit();
         }
         Column {
             destinations,
-            all,
-            by_group,
-            group_ends,
+            counts,
+            starts: all_starts,
+            groups,
             samples: ends.len(),
             ends: Vec::new(),
             spreading,

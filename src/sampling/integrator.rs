@@ -6,10 +6,11 @@
 //! by half a step before and after a step of Heun's of everything else, and takes nothing from the damping. Where laws
 //! alone are asked for, increments of four values (`four_point.rs`) do what normal ones do.
 
-use multiversion::multiversion;
-
+pub(crate) use folds::WholeTurn;
+use folds::{Mirror, mirrors};
 use splitting::rows_of;
 pub(crate) use splitting::{Position, positions};
+use steps::{Scratch, euler_maruyama, heun};
 
 use super::random::{NormalStream, OnLines};
 use crate::MAX_DIMENSION;
@@ -77,77 +78,10 @@ pub(crate) struct Stepper<'a> {
     cancellation: Cancellation,
 }
 
-/// One turn of an axis that closes on itself.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct WholeTurn {
-    pub(crate) axis: usize,
-    from: f64,
-    pub(crate) length: f64,
-}
-
-impl WholeTurn {
-    /// Those of a system.
-    pub(crate) fn of(system: &dyn System) -> Vec<Self> {
-        let turns = system.facts().turns.iter();
-        let turn = |(&axis, &(from, to)): (&usize, &(f64, f64))| Self {
-            axis,
-            from,
-            length: to - from,
-        };
-        turns.map(turn).collect()
-    }
-
-    /// Whole turns from the one that is looked at to the one in which a coordinate is.
-    pub(crate) fn number(&self, x: f64) -> f64 {
-        ((x - self.from) / self.length).floor()
-    }
-
-    fn fold(&self, states: &mut [Lanes]) {
-        for x in &mut states[self.axis] {
-            *x -= self.length * self.number(*x);
-        }
-    }
-}
-
 /// A noise, and its amplitude times √dt where it is constant.
 struct Channel<'a> {
     noise: &'a Noise,
     increment: Option<f64>,
-}
-
-/// Walls of an axis at which paths are reflected, infinite where there is none. A path between walls is the image of a
-/// free path of the system that goes on beyond them as in a mirror: folded back, with the drift turned round.
-struct Mirror {
-    axis: usize,
-    from: f64,
-    to: f64,
-}
-
-fn mirrors(system: &dyn System) -> Vec<Mirror> {
-    let walls = system.facts().reflecting.iter();
-    walls
-        .map(|(&axis, &(from, to))| Mirror { axis, from, to })
-        .collect()
-}
-
-impl Mirror {
-    /// The image of a coordinate between the walls, and whether it is turned round.
-    fn image(&self, x: f64) -> (f64, bool) {
-        // A step that passes both walls is of no use for anything; it ends at a wall.
-        if x < self.from {
-            ((2.0 * self.from - x).min(self.to), true)
-        } else if x > self.to {
-            ((2.0 * self.to - x).max(self.from), true)
-        } else {
-            (x, false)
-        }
-    }
-
-    fn fold(&self, states: &mut [Lanes]) {
-        for x in &mut states[self.axis] {
-            *x = self.image(*x).0;
-        }
-    }
 }
 
 impl<'a> Stepper<'a> {
@@ -368,96 +302,10 @@ impl<'a> Stepper<'a> {
     }
 }
 
-/// Room for what a step works out, a row an axis.
-#[repr(align(64))]
-struct Scratch {
-    /// Zero on axes without noise.
-    increments: [Lanes; MAX_DIMENSION],
-    start: [Lanes; MAX_DIMENSION],
-    end: [Lanes; MAX_DIMENSION],
-}
-
-impl Scratch {
-    fn new() -> Self {
-        let rows = [[0.0; LANES]; MAX_DIMENSION];
-        Self {
-            increments: rows,
-            start: rows,
-            end: rows,
-        }
-    }
-}
-
-/// Steps of Heun's of all axes, or of those that are no positions between half steps of these.
-#[multiversion(targets = "simd")]
-fn heun(
-    stepper: &Stepper<'_>,
-    states: &mut [Lanes],
-    first: usize,
-    steps: usize,
-    normals: &[Lanes],
-    scratch: &mut Scratch,
-) {
-    let (dimension, channels) = (states.len(), stepper.noise.len());
-    let (step, half) = (stepper.time_step, 0.5 * stepper.time_step);
-    let Scratch {
-        increments,
-        start,
-        end,
-    } = scratch;
-    let (start, end) = (&mut start[..dimension], &mut end[..dimension]);
-    stepper.move_positions(states, half);
-    for number in 0..steps {
-        let time = (first + number) as f64 * step;
-        // Time is a position too.
-        let times = match stepper.positions.is_empty() {
-            true => [time, time + step],
-            false => [time + half; 2],
-        };
-        let normals = &normals[number * channels..(number + 1) * channels];
-        stepper.system.drift(times[0], states, start);
-        stepper.increments(times[0], states, normals, increments);
-        // States become those of the predictor x + dt F(x) + b ΔW, and then go on by dt/2 (F(predictor) - F(x)).
-        stepper.predict(states, start, normals, increments);
-        stepper.drift_beyond(times[1], states, end);
-        for &axis in &stepper.rest {
-            for lane in 0..LANES {
-                states[axis][lane] += half * (end[axis][lane] - start[axis][lane]);
-            }
-        }
-        // A velocity at a wall is turned round before it moves anything.
-        stepper.reflect(states);
-        stepper.move_positions(states, if number + 1 < steps { step } else { half });
-        stepper.turn_back(states);
-    }
-}
-
-#[multiversion(targets = "simd")]
-fn euler_maruyama(
-    stepper: &Stepper<'_>,
-    states: &mut [Lanes],
-    first: usize,
-    steps: usize,
-    normals: &[Lanes],
-    scratch: &mut Scratch,
-) {
-    let (dimension, channels) = (states.len(), stepper.noise.len());
-    let step = stepper.time_step;
-    let Scratch {
-        increments, start, ..
-    } = scratch;
-    let start = &mut start[..dimension];
-    for number in 0..steps {
-        let time = (first + number) as f64 * step;
-        let normals = &normals[number * channels..(number + 1) * channels];
-        stepper.increments(time, states, normals, increments);
-        stepper.system.drift(time, states, start);
-        stepper.predict(states, start, normals, increments);
-        stepper.reflect(states);
-        stepper.turn_back(states);
-    }
-}
-
+mod folds;
 mod splitting;
+#[cfg(test)]
+mod splitting_tests;
+mod steps;
 #[cfg(test)]
 mod tests;

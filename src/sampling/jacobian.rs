@@ -1,6 +1,6 @@
 //! Local time scales of the drift from its Jacobian, and of a noise whose amplitude depends on what it drives.
 
-use nalgebra::{DMatrix, Schur};
+use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 use super::integrator::Position;
 use crate::space::CellSpace;
@@ -64,23 +64,16 @@ pub(super) fn local_rates(
     let is_position = |axis: &usize| positions.iter().any(|one| one.axis == *axis);
     let rest: Vec<usize> = (0..dimension).filter(|axis| !is_position(axis)).collect();
     let of_rest = jacobian.select_rows(&rest).select_columns(&rest);
-    let eigenvalues = Schur::try_new(jacobian, 1e-12, 1000)?.complex_eigenvalues();
+    let of = |matrix| Some(Schur::try_new(matrix, 1e-12, 1000)?.complex_eigenvalues());
+    let largest = |of: &DVector<Complex<f64>>| of.iter().map(|one| one.norm()).fold(0.0, f64::max);
     let kicks = noise_rate(system, state, &width);
-    let all = eigenvalues
-        .iter()
-        .map(|value| value.norm())
-        .fold(0.0, f64::max);
-    let fastest = all.max(kicks);
+    let eigenvalues = of(jacobian)?;
+    let fastest = largest(&eigenvalues).max(kicks);
     let split = match positions.is_empty() {
         true => fastest,
-        false => {
-            let of_rest = Schur::try_new(of_rest, 1e-12, 1000)?.complex_eigenvalues();
-            let still = of_rest
-                .iter()
-                .map(|value| value.norm())
-                .fold(kicks, f64::max);
-            still.max(all / LONGER)
-        }
+        false => (largest(&eigenvalues) / LONGER)
+            .max(largest(&of(of_rest)?))
+            .max(kicks),
     };
     let oscillating = eigenvalues.iter().filter(|value| value.im > 0.0);
     let pair = oscillating.max_by(|a, b| a.im.total_cmp(&b.im));

@@ -72,7 +72,7 @@ pub struct Pilot {
     pub damping: f64,
     /// What takes the place of ω for an integrator that moves positions apart (coordinates without noise that a
     /// velocity moves): the largest of ω/2, of the rates at which everything else changes where they stand, and of
-    /// what noises say. `None` without positions.
+    /// what noises say, per unit of time. `None` without positions.
     pub split_frequency: Option<f64>,
     /// The axis that is the phase of a forcing, along which cells spread nothing.
     pub(crate) phase: Option<usize>,
@@ -224,26 +224,18 @@ pub fn pilot(
     };
     let steps = ((settling / step) as usize).clamp(RECORDS, MOST_STEPS);
     let stepper = Stepper::new(system, Integrator::StochasticHeun, step, cancellation);
-    let run = |batch: u64| trajectories((&stepper, &positions), system, space, seed, batch, steps);
+    let run = |batch: u64| trajectories(&stepper, system, space, seed, batch, steps);
     let records: Result<Vec<Record>, _> = (0..BATCHES).into_par_iter().map(run).collect();
-    let mut record = Record::new(space, &positions);
+    let mut record = Record::new(system, space);
     for of_batch in &records? {
         record.join(of_batch);
     }
     if record.inside == 0 {
         let outside = record.outside.clone();
-        let empty = Record::new(space, &positions);
-        let seen = nothing_stays(system, space, seed, (scouted, 2 * steps), empty);
-        return Ok(Pilot {
-            outside,
-            phase: system.facts().phase,
-            ..seen
-        });
+        let seen = nothing_stays(system, space, seed, (scouted, 2 * steps));
+        return Ok(Pilot { outside, ..seen });
     }
-    Ok(Pilot {
-        phase: system.facts().phase,
-        ..record.finish(2 * steps)
-    })
+    Ok(record.finish(2 * steps))
 }
 
 /// The rate at which noise takes a state across a fair part of the range of an axis, the largest of all. It is slower
@@ -272,8 +264,8 @@ fn nothing_stays(
     space: &CellSpace,
     seed: u64,
     (rates, steps): (Vec<LocalRates>, usize),
-    mut record: Record,
 ) -> Pilot {
+    let mut record = Record::new(system, space);
     for scout in 0..SCOUTS {
         record.visit(system, space, &place(space, seed, scout, true));
     }
@@ -307,7 +299,7 @@ fn place(space: &CellSpace, seed: u64, point: u64, spread: bool) -> Vec<f64> {
 
 /// One batch: settles for `steps` steps and is recorded during as many again.
 fn trajectories(
-    (stepper, positions): (&Stepper<'_>, &[Position]),
+    stepper: &Stepper<'_>,
     system: &dyn System,
     space: &CellSpace,
     seed: u64,
@@ -328,7 +320,7 @@ fn trajectories(
         block: batch,
     });
     stepper.advance(&mut states, 0, steps, &mut stream)?;
-    let mut record = Record::new(space, positions);
+    let mut record = Record::new(system, space);
     let mut done = steps;
     for visit in 1..=RECORDS {
         let until = steps + visit * steps / RECORDS;

@@ -214,23 +214,23 @@ impl SampledTransitions {
             let terms = starts.iter().zip(slope);
             terms.map(|(&start, s)| f64::from(start) * s).sum()
         };
-        let mut left_out = left_out.into_iter().flat_map(|group| column.group(group));
-        let mut next = left_out.next();
-        for (number, &(place, count)) in column.all.counts.iter().enumerate() {
-            let mut count = count;
-            let all = column.all.starts.chunks_exact(dimension).nth(number);
-            let mut tilted = slope
-                .zip(all)
-                .map_or(0.0, |(slope, starts)| tilt(starts, slope));
-            if let Some((of_group, (_, without))) = next.filter(|(_, share)| share.0 == place) {
-                count -= without;
-                if let Some(slope) = slope {
-                    tilted -= tilt(column.group_starts(of_group, dimension), slope);
-                }
-                next = left_out.next();
+        let starts = |of: &[f32], number: usize| {
+            let of_axes = number * dimension..(number + 1) * dimension;
+            slope.map_or(0.0, |slope| tilt(&of[of_axes], slope))
+        };
+        let group = left_out.map(|group| &column.groups[group]);
+        let shares = group
+            .into_iter()
+            .flat_map(|group| group.counts.iter().enumerate());
+        let mut shares = shares.peekable();
+        let ends = column.destinations.iter().zip(&column.counts);
+        for (place, (&cell, &all)) in ends.enumerate() {
+            let (mut count, mut tilted) = (all, starts(&column.starts, place));
+            if let Some((number, share)) = shares.next_if(|(_, share)| share.0 as usize == place) {
+                count -= share.1;
+                tilted -= group.map_or(0.0, |group| starts(&group.starts, number));
             }
             if count > 0 {
-                let cell = column.destinations[place as usize];
                 weights.push((cell, f64::from(count) + tilted));
             }
         }

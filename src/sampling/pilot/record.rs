@@ -1,6 +1,8 @@
 //! Sums over the states that a pilot's trajectories visit.
 
-use super::{LocalRates, Pilot, Position, SLOWER_THAN_SPREAD, local_rates, quantile, summary};
+use super::{
+    LocalRates, Pilot, Position, SLOWER_THAN_SPREAD, local_rates, positions, quantile, summary,
+};
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes, System};
 
@@ -13,6 +15,7 @@ pub(super) struct Record {
     /// Local rates at some of the visits.
     pub(super) rates: Vec<LocalRates>,
     positions: Vec<Position>,
+    phase: Option<usize>,
     visits: usize,
     axes: Vec<AxisSums>,
     /// States beyond the range of each axis, or no numbers.
@@ -30,7 +33,7 @@ struct AxisSums {
 }
 
 impl Record {
-    pub(super) fn new(space: &CellSpace, positions: &[Position]) -> Self {
+    pub(super) fn new(system: &dyn System, space: &CellSpace) -> Self {
         let middle = |axis: &crate::space::Axis| AxisSums {
             middle: 0.5 * (axis.from() + axis.to()),
             ..AxisSums::default()
@@ -39,7 +42,8 @@ impl Record {
             cells: Vec::new(),
             inside: 0,
             rates: Vec::new(),
-            positions: positions.to_vec(),
+            positions: positions(system),
+            phase: system.facts().phase,
             visits: 0,
             axes: space.axes().iter().map(middle).collect(),
             outside: vec![0; space.dimension()],
@@ -134,7 +138,7 @@ impl Record {
                 .then_some(split.max(SLOWER_THAN_SPREAD * crossing)),
             damping,
             cells: self.cells,
-            phase: None,
+            phase: self.phase,
         }
     }
 }
