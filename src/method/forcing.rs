@@ -39,13 +39,6 @@ pub(super) fn parts_of_period(problem: &Problem, least: usize) -> Result<usize, 
     Ok(least.next_multiple_of(fewest))
 }
 
-/// Time in which a forced system passes one cell along its phase; `None` without forcing.
-pub(super) fn part_of_period(system: &dyn System, space: &CellSpace) -> Option<f64> {
-    let axis = system.facts().phase?;
-    let frequency = system.drift_at(0.0, &vec![0.0; system.dimension()])[axis];
-    Some(1.0 / (frequency * space.axes()[axis].count() as f64))
-}
-
 /// Difference between first harmonics of the drift, over the largest, that is rounding.
 const ROUNDING: f64 = 1e-9;
 

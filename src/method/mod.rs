@@ -70,7 +70,7 @@ pub use time_step::StepChoice;
 use crate::cancellation::Cancelled;
 use crate::continuation::SourceError;
 use crate::monte_carlo::MonteCarloError;
-use crate::sampling::SamplingError;
+use crate::sampling::{SamplingError, frequency_of_forcing};
 use crate::stationary::StationaryError;
 use crate::stationary::generator::RateError;
 
@@ -220,10 +220,9 @@ fn has_densities(problem: &Problem) -> Result<(), MethodError> {
     let (from, to) = family.ends();
     for value in [from, 0.5 * (from + to), to] {
         let system = family.at(value)?;
-        let Some(phase) = system.facts().phase else {
+        let Some((_, frequency)) = frequency_of_forcing(system.as_ref()) else {
             break;
         };
-        let frequency = system.drift_at(0.0, &vec![0.0; system.dimension()])[phase];
         if !(frequency.is_finite() && frequency > 0.0) {
             let parameter = family.parameter().to_owned();
             return Err(MethodError::Standing {

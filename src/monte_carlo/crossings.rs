@@ -250,10 +250,6 @@ impl<'a> Crossings<'a> {
         chances: &Chances,
     ) -> Option<Meeting> {
         let at = |(levels, speeds): &Levels| (levels[lane], speeds[lane]);
-        if before[region].0[lane] < 0.0 && self.seen[region].0[lane] < 0.0 {
-            let (first, last) = (0.0, 1.0);
-            return Some(Meeting { first, last });
-        }
         let ends = StepLevels::new(at(&before[region]), at(&self.seen[region]), self.time_step);
         let (unmet, drawn) = (&mut self.unmet[region][lane], &mut self.drawn[region][lane]);
         match (ends.before < 0.0, ends.after < 0.0) {
@@ -262,11 +258,7 @@ impl<'a> Crossings<'a> {
                 last: 1.0,
             }),
             (false, false) => {
-                let factor = if ends.variance > 0.0 {
-                    ends.unmet()
-                } else {
-                    1.0
-                };
+                let factor = ends.unmet();
                 if factor == 1.0 {
                     return None;
                 }

@@ -4,6 +4,7 @@
 
 use super::MonteCarloError;
 use super::batch::Histogram;
+use crate::sampling::part_of_period;
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes, System};
 
@@ -28,12 +29,11 @@ impl Phases {
         space: &CellSpace,
         spacing: f64,
     ) -> Result<Option<Self>, MonteCarloError> {
-        let Some(axis) = system.facts().phase else {
+        let (Some(axis), Some(wanted)) = (system.facts().phase, part_of_period(system, space))
+        else {
             return Ok(None);
         };
         let parts = space.axes()[axis].count();
-        let frequency = system.drift_at(0.0, &vec![0.0; system.dimension()])[axis];
-        let wanted = 1.0 / (frequency * parts as f64);
         // Also for what is not a number.
         if (spacing / wanted - 1.0).abs() <= ROUNDING {
             return Ok(Some(Self { axis, parts }));

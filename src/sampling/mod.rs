@@ -44,6 +44,7 @@ pub use integrator::Integrator;
 pub(crate) use integrator::{Stepper, WholeTurn};
 pub(crate) use lookup::CellLookup;
 pub use options::SamplingOptions;
+pub(crate) use phase::{frequency_of_forcing, part_of_period};
 pub use pilot::{Pilot, pilot};
 pub(crate) use random::{NormalStream, StreamKey, mix, unit};
 pub use transition::{SampledTransitions, TransitionMatrix};

@@ -5,12 +5,24 @@
 //! which is a cell again: the phase never spreads, and goes round in the chain as it does in the system.
 
 use super::SamplingError;
-use crate::MAX_DIMENSION;
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes, System};
 
 /// Parts of the period by which a map step may differ from a whole number of them: rounding.
 const ROUNDING: f64 = 1e-6;
+
+/// The axis that is the phase of a forcing, and the forcing's frequency, in periods per unit of time; `None` without.
+pub(crate) fn frequency_of_forcing(system: &dyn System) -> Option<(usize, f64)> {
+    let axis = system.facts().phase?;
+    let drift = system.drift_at(0.0, &vec![0.0; system.dimension()]);
+    Some((axis, drift[axis]))
+}
+
+/// Time in which a forced system passes one cell along its phase; `None` without forcing.
+pub(crate) fn part_of_period(system: &dyn System, space: &CellSpace) -> Option<f64> {
+    let (axis, frequency) = frequency_of_forcing(system)?;
+    Some(1.0 / (frequency * space.axes()[axis].count() as f64))
+}
 
 /// How a map step moves the phase.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,12 +44,11 @@ impl PhaseStep {
         space: &CellSpace,
         map_step: f64,
     ) -> Result<Option<Self>, SamplingError> {
-        let Some(axis) = system.facts().phase else {
+        let (Some(axis), Some(part)) = (system.facts().phase, part_of_period(system, space)) else {
             return Ok(None);
         };
         let count = space.axes()[axis].count();
-        let frequency = system.drift_at(0.0, &[0.0; MAX_DIMENSION][..system.dimension()])[axis];
-        let parts = map_step * frequency * count as f64;
+        let parts = map_step / part;
         // Also for what is not a number.
         if parts >= 0.5 && (parts - parts.round()).abs() <= ROUNDING {
             let passed = parts.round() as usize;
@@ -47,10 +58,7 @@ impl PhaseStep {
                 count,
             }));
         }
-        Err(SamplingError::Phase {
-            map_step,
-            part: 1.0 / (frequency * count as f64),
-        })
+        Err(SamplingError::Phase { map_step, part })
     }
 
     /// The cell along the phase in which trajectories from another end.

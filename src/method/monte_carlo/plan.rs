@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use super::{Estimator, MonteCarloOptions};
 use crate::cancellation::{Cancellation, Cancelled};
-use crate::method::forcing::part_of_period;
 use crate::method::time_step::time_step;
 use crate::monte_carlo::{ErgodicRun, Relaxation, StepBias};
+use crate::sampling::part_of_period;
 use crate::space::CellSpace;
 use crate::system::{LANES, System};
 

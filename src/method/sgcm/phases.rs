@@ -6,9 +6,10 @@
 
 use crate::continuation::Measure;
 use crate::density::{EstimatedMoments, Moments, moments, phase_factors, times};
-use crate::method::forcing::{Forced, part_of_period, parts_of_period};
+use crate::method::forcing::{Forced, parts_of_period};
 use crate::method::report::Missing;
 use crate::method::{MethodError, Problem, StepChoice};
+use crate::sampling::part_of_period;
 use crate::space::{Axis, CellSpace, SpaceError};
 use crate::system::System;
 

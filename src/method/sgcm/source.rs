@@ -15,7 +15,6 @@ use crate::cancellation::{Cancellation, Cancelled};
 use crate::continuation::measure::{ESCAPE_RATE, MAP_STEP, TIME_STEP_BIAS};
 use crate::continuation::{Finding, Solution, Subject};
 use crate::density::{EstimatedDensity, moments};
-use crate::method::forcing::part_of_period;
 use crate::method::measures::{Cells, Others};
 use crate::method::problem::Maps;
 use crate::method::report::Reporter;
@@ -23,7 +22,8 @@ use crate::method::watched::Masses;
 use crate::method::{MethodError, Problem};
 use crate::monte_carlo::StepBias;
 use crate::sampling::{
-    SampledTransitions, SamplingError, SamplingOptions, TransitionMatrix, sample_transitions,
+    SampledTransitions, SamplingError, SamplingOptions, TransitionMatrix, part_of_period,
+    sample_transitions,
 };
 use crate::space::CellSpace;
 use crate::stationary::{Options, Outcome, SteadyState, second_eigenvalue};
