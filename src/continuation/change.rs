@@ -144,7 +144,8 @@ fn between(
 /// What follows an event. A critical point that stays, on a line of symmetry, goes before a fold, but where a force
 /// bends between it and its saddle: curvatures jump there, and what passes zero is the slope. Where counts follow from
 /// the equations, a change of sign at which the count stays is another event's: a peak that was born on a flank before
-/// it reaches a kink. Then its inflection is followed in place of the kink.
+/// it reaches a kink. Then its inflection is followed in place of the kink. Where the slope between a peak and the
+/// valley that it merges with does not change its sign, that on the peak's other side may.
 fn decisive(
     points: &[&Point],
     detector: &dyn Detector,
@@ -165,7 +166,15 @@ fn decisive(
             return course;
         }
     }
-    let first = follow(points, detector, observable, gap, event);
+    let mut first = follow(points, detector, observable, gap, event);
+    if !matches!(first, Some(Course::Crossing(_))) {
+        let present = points[if event.above { gap.1 } else { gap.0 }];
+        let other = event.on_other_flank(present, observable);
+        let course = other.and_then(|other| follow(points, detector, observable, gap, &other));
+        if let Some(Course::Crossing(_)) = course {
+            first = course;
+        }
+    }
     let is_exact = |index: usize| {
         let density = &points[index].densities[observable];
         density.structure.profile.is_some()

@@ -54,6 +54,26 @@ impl Event {
         })
     }
 
+    /// The same where a peak of one axis meets the valley on its other side: which of its two valleys it was born with,
+    /// or vanishes with, does not follow from their heights at a value some way off. `None` where there is none.
+    pub(super) fn on_other_flank(&self, point: &Point, observable: usize) -> Option<Self> {
+        let (kind, _) = self.indicator.as_ref()?;
+        let (rising, &[peak]) = (kind.traits().rising?, self.place.as_slice()) else {
+            return None;
+        };
+        let axis = &point.densities[observable].density.axes[0];
+        let beyond = present(point, observable, FeatureKind::Valley)
+            .into_iter()
+            .map(|valley| axis.apart(valley.position[0], peak))
+            .filter(|apart| (*apart > 0.0) == rising);
+        let nearest = beyond.min_by(|a, b| a.abs().total_cmp(&b.abs()))?;
+        let between = peak + 0.5 * nearest;
+        Some(Self {
+            indicator: Some((IndicatorKind::shoulder(!rising), vec![between])),
+            ..self.clone()
+        })
+    }
+
     /// Whether the density bends at a plane between the critical point of a joint density and the one that it is born
     /// with.
     pub(super) fn is_across_bend(&self, density: &EstimatedDensity) -> bool {

@@ -14,6 +14,7 @@ mod formulas;
 mod gibbs;
 mod places;
 mod sampled;
+mod turning;
 mod wells;
 
 use std::fmt::Write as _;
@@ -414,7 +415,7 @@ struct Score {
 
 impl Score {
     /// Changes where no steady state was found count as those in a band.
-    fn of(case: &Case, Found { rows, failures }: &Found) -> Self {
+    fn of(truths: &[f64], Found { rows, failures }: &Found) -> Self {
         let is_located = |row: &Located| row.status() == BifurcationStatus::Located;
         let holds = |row: &Located, truth: f64| match is_located(row) {
             true => (row.value - truth).abs() <= row.error,
@@ -427,32 +428,27 @@ impl Score {
             rows.iter()
                 .any(|row| is_located(row) == located && holds(row, *truth))
         };
-        let right = case
-            .truths
-            .iter()
-            .filter(|truth| found(truth, true))
-            .count();
+        let right = truths.iter().filter(|truth| found(truth, true)).count();
         let is_told = |truth: f64| {
             let mut failures = failures.iter();
             found(&truth, false)
                 || failures.any(|[lower, upper]| (*lower..=*upper).contains(&truth))
         };
-        let band = case
-            .truths
+        let band = truths
             .iter()
             .filter(|truth| !found(truth, true) && is_told(**truth))
             .count();
         let wrong = |located: bool| {
             let of = rows.iter().filter(|row| is_located(row) == located);
-            of.filter(|row| !case.truths.iter().any(|truth| holds(row, *truth)))
+            of.filter(|row| !truths.iter().any(|truth| holds(row, *truth)))
                 .count()
         };
         Self {
             systems: 1,
-            truths: case.truths.len(),
+            truths: truths.len(),
             located_right: right,
             in_band: band,
-            missed: case.truths.len() - right - band,
+            missed: truths.len() - right - band,
             located: rows.iter().filter(|row| is_located(row)).count(),
             false_located: wrong(true),
             bands_without: wrong(false),
@@ -483,8 +479,8 @@ impl Score {
     }
 }
 
-fn told(case: &Case, Found { rows, failures }: &Found) -> String {
-    let mut text = format!("{}\n  changes at {:?}\n", case.words, case.truths);
+fn told((words, truths): (&str, &[f64]), Found { rows, failures }: &Found) -> String {
+    let mut text = format!("{words}\n  changes at {truths:?}\n");
     if !failures.is_empty() {
         writeln!(text, "  no steady state in {failures:?}").unwrap();
     }
@@ -508,25 +504,37 @@ fn told(case: &Case, Found { rows, failures }: &Found) -> String {
     text
 }
 
+/// Adds a system to the score of its family; prints what was not wholly right.
+fn score_of(
+    family: &'static str,
+    known: (&str, &[f64]),
+    seed: u64,
+    found: &Found,
+    scores: &mut Vec<(&'static str, Score)>,
+) {
+    let score = Score::of(known.1, found);
+    if score.missed + score.false_located + score.bands_without + score.in_band > 0 {
+        println!(
+            "seed {seed}: missed {}, false {}, bands without {}\n{}",
+            score.missed,
+            score.false_located,
+            score.bands_without,
+            told(known, found)
+        );
+    }
+    match scores.iter_mut().find(|one| one.0 == family) {
+        Some(one) => one.1.add(&score),
+        None => scores.push((family, score)),
+    }
+}
+
 /// Runs cases; prints what was not wholly right; returns the scores by family.
 fn run(cases: impl Iterator<Item = (u64, Case)>) -> Vec<(&'static str, Score)> {
     let mut scores: Vec<(&'static str, Score)> = Vec::new();
     for (seed, case) in cases {
         let found = solve(&case);
-        let score = Score::of(&case, &found);
-        if score.missed + score.false_located + score.bands_without + score.in_band > 0 {
-            println!(
-                "seed {seed}: missed {}, false {}, bands without {}\n{}",
-                score.missed,
-                score.false_located,
-                score.bands_without,
-                told(&case, &found)
-            );
-        }
-        match scores.iter_mut().find(|one| one.0 == case.family) {
-            Some(one) => one.1.add(&score),
-            None => scores.push((case.family, score)),
-        }
+        let known = (&case.words[..], &case.truths[..]);
+        score_of(case.family, known, seed, &found, &mut scores);
     }
     scores
 }

@@ -153,7 +153,7 @@ fn with_effort(seed: u64, effort: f64) -> Score {
         effort,
         ..LocateOptions::default()
     };
-    Score::of(&case, &solve_with(&case, &options))
+    Score::of(&case.truths, &solve_with(&case, &options))
 }
 
 /// What is found in a system without closer looks, and with them.

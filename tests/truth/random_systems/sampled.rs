@@ -110,21 +110,13 @@ fn run_sampled(
         for seed in seeds.clone() {
             let system = sampled(&mut Dice::new(6000 + 100 * kind + seed), kind);
             let rows = solved(&system, seed, 21);
-            let case = Case {
-                family: system.family,
-                words: format!("x' = {} + {} ξ, seed {seed}", system.drift, system.noise),
-                model: pbif::system::registry::find("bistable").unwrap(),
-                axes: Vec::new(),
-                ends: system.ends,
-                points: 21,
-                truths: system.truths.clone(),
-            };
+            let words = format!("x' = {} + {} ξ, seed {seed}", system.drift, system.noise);
             let found = Found {
                 rows,
                 failures: Vec::new(),
             };
-            let score = Score::of(&case, &found);
-            println!("{}", told(&case, &found));
+            let score = Score::of(&system.truths, &found);
+            println!("{}", told((&words, &system.truths), &found));
             let ratios = found
                 .rows
                 .iter()
