@@ -4,7 +4,7 @@ use super::observer::Steps;
 use super::solve::{Sources, generator_on};
 use super::{
     CompareError, ComparedValue, Distance, Method, PAPER_CELLS, Solved, Task, distances,
-    exact_density, has_cell_map, uniform_cells,
+    exact_density, uniform_cells,
 };
 use crate::density::{EstimatedDensity, Observable};
 use crate::space::CellSpace;
@@ -116,11 +116,7 @@ impl Gauge<'_> {
         for factor in GENERATOR_GRIDS {
             runs.extend(self.generator(factor, steps)?);
         }
-        let maps: &[f64] = match has_cell_map(self.task.problem) {
-            true => SGCM_GRIDS[many],
-            false => &[],
-        };
-        for &factor in maps {
+        for &factor in SGCM_GRIDS[many] {
             let count = (PAPER_CELLS as f64 * factor).round() as usize;
             let space = uniform_cells(self.common, count)?;
             let both = steps.solved(&mut || sources.sgcm_on(&space, value))?;

@@ -77,7 +77,7 @@ pub struct Pair {
 pub struct ComparedValue {
     /// The value.
     pub value: f64,
-    /// The methods in the order of [`Method::ALL`]; without SGCM where there is an angle.
+    /// The methods in the order of [`Method::ALL`].
     pub solved: Vec<Solved>,
     /// Every two methods with a density, and every method with the exact density where it is known, a row an
     /// observable.
@@ -222,11 +222,6 @@ pub fn common_cells(space: &CellSpace) -> Result<CellSpace, crate::space::SpaceE
     uniform_cells(space, PAPER_CELLS)
 }
 
-/// Whether SGCM takes part: it maps no angles.
-pub(crate) fn has_cell_map(problem: &Problem) -> bool {
-    problem.family().angles().next().is_none()
-}
-
 /// Cells of equal width over the ranges of `space`: `count` along the first two axes.
 fn uniform_cells(space: &CellSpace, count: usize) -> Result<CellSpace, crate::space::SpaceError> {
     let axes = space.axes().iter().enumerate();
@@ -261,8 +256,7 @@ pub fn compare(
 ) -> Result<Comparison, CompareError> {
     let common = common_cells(task.problem.space())?;
     // Preparation, the generator, SGCM by both corrections, Monte Carlo; and the error against time.
-    let methods = if has_cell_map(task.problem) { 3 } else { 2 };
-    let total = 2 + methods * task.at.len();
+    let total = 2 + 3 * task.at.len();
     let mut steps = Steps::new(observer, total, cancellation);
     steps.next("choosing steps".to_owned())?;
     let sources = Sources::new(task, &common, cancellation)?;
@@ -295,10 +289,8 @@ impl Comparison {
             let at = |method: &str| format!("{parameter} = {value}: {method}");
             steps.next(at("generator"))?;
             let mut solved = steps.solved(&mut || Ok(vec![sources.generator(value)?]))?;
-            if has_cell_map(task.problem) {
-                steps.next(at("SGCM"))?;
-                solved.extend(steps.solved(&mut || sources.sgcm(value))?);
-            }
+            steps.next(at("SGCM"))?;
+            solved.extend(steps.solved(&mut || sources.sgcm(value))?);
             steps.next(at("Monte Carlo"))?;
             solved.extend(steps.solved(&mut || Ok(vec![sources.monte_carlo(value)?]))?);
             let pairs = pairs(task, &self.common, value, &solved)?;

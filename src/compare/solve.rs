@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::exact::common_axes;
-use super::{CompareError, Method, PAPER_MAP_STEP, Task, has_cell_map, overlap::rebin_density};
+use super::{CompareError, Method, PAPER_MAP_STEP, Task, overlap::rebin_density};
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
 use crate::density::EstimatedDensity;
@@ -67,8 +67,7 @@ pub(super) struct Sources<'a> {
     task: &'a Task<'a>,
     common: &'a CellSpace,
     cancellation: &'a Cancellation,
-    /// `None` where SGCM takes no part.
-    sgcm: Option<SgcmSource>,
+    sgcm: SgcmSource,
     sgcm_seconds: f64,
     monte_carlo: MonteCarloSource,
     monte_carlo_seconds: f64,
@@ -81,10 +80,7 @@ impl<'a> Sources<'a> {
         cancellation: &'a Cancellation,
     ) -> Result<Self, CompareError> {
         let clock = Instant::now();
-        let sgcm = match has_cell_map(task.problem) {
-            true => Some(sgcm_on(task, common, cancellation)?),
-            false => None,
-        };
+        let sgcm = sgcm_on(task, common, cancellation)?;
         let sgcm_seconds = clock.elapsed().as_secs_f64();
         let clock = Instant::now();
         let problem = task.problem.on(common.clone())?;
@@ -111,11 +107,8 @@ impl<'a> Sources<'a> {
     }
 
     pub(super) fn sgcm(&self, value: f64) -> Result<Vec<Solved>, CompareError> {
-        let Some(source) = &self.sgcm else {
-            return Ok(Vec::new());
-        };
         let mut both = sgcm_both(
-            source,
+            &self.sgcm,
             &self.task.sgcm,
             self.common,
             value,
@@ -145,11 +138,8 @@ impl<'a> Sources<'a> {
         space: &CellSpace,
         value: f64,
     ) -> Result<Vec<Solved>, CompareError> {
-        let Some(source) = &self.sgcm else {
-            return Ok(Vec::new());
-        };
         sgcm_both(
-            &source.on(space)?,
+            &self.sgcm.on(space)?,
             &self.task.sgcm,
             self.common,
             value,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::solve::Sources;
-use super::{Method, Task, agreement, has_cell_map, pairs, uniform_cells};
+use super::{Method, Task, agreement, pairs, uniform_cells};
 use crate::cancellation::Cancellation;
 use crate::density::Observable;
 use crate::method::{GeneratorMethodOptions, MonteCarloOptions, Problem, SgcmOptions};
@@ -48,7 +48,6 @@ fn methods_agree_on_a_forced_duffing_oscillator_at_two_phases() {
             ..MonteCarloOptions::default()
         },
     };
-    assert!(has_cell_map(&problem));
     // Fewer cells than a comparison has, for the sake of time.
     let common = uniform_cells(problem.space(), 36).unwrap();
     let never = Cancellation::new();

@@ -10,20 +10,47 @@ use nalgebra::Complex;
 
 use crate::continuation::Measure;
 use crate::continuation::measure::{AMPLIFICATION, AMPLITUDE};
+use crate::density::layout_axis;
 use crate::method::lattice::for_all_nodes;
 use crate::method::{MOST_PHASES, MethodError, Problem};
-use crate::space::CellSpace;
+use crate::space::{Axis, CellSpace};
 use crate::system::{Family, System};
 
 /// Distance of a phase from a part of the period that is rounding, in parts.
 const SAME_PHASE: f64 = 1e-9;
+
+/// The problem on even cells over all that closes on itself: along the phase of a forcing so many at least, each for the
+/// phase at its beginning, along an angle those that densities are laid out on. Other axes keep what they have.
+///
+/// # Errors
+/// [`MethodError::Phases`].
+pub(super) fn on_even_turns(
+    problem: &Problem,
+    fewest_phases: usize,
+) -> Result<Problem, MethodError> {
+    let space = problem.space();
+    if !space.axes().iter().any(Axis::is_closed) {
+        return Ok(problem.clone());
+    }
+    let phase = problem.family().model().phase_axis();
+    let axes = space.axes().iter().enumerate();
+    let axes = axes.map(|(index, axis)| match phase == Some(index) {
+        true => {
+            let parts = parts_of_period(problem, fewest_phases)?;
+            Ok(Axis::turn(axis.from(), axis.to(), parts)?)
+        }
+        false => Ok(layout_axis(axis)),
+    });
+    let axes: Result<Vec<Axis>, MethodError> = axes.collect();
+    problem.on(CellSpace::new(axes?)?)
+}
 
 /// Even parts of the period among which all phases are that are watched: a multiple of the fewest, and so many at
 /// least.
 ///
 /// # Errors
 /// [`MethodError::Phases`].
-pub(super) fn parts_of_period(problem: &Problem, least: usize) -> Result<usize, MethodError> {
+fn parts_of_period(problem: &Problem, least: usize) -> Result<usize, MethodError> {
     let quantities = problem.family().quantities().iter();
     let phases: Vec<f64> = quantities
         .filter_map(|quantity| Some(quantity.phase()?.phase))

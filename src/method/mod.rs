@@ -95,12 +95,6 @@ pub enum MethodError {
     /// The drift depends on time.
     #[error(transparent)]
     Periodic(#[from] crate::system::PeriodicDrift),
-    /// A cell map, of a system with an angle.
-    #[error("`{axis}` is an angle: angles are for the generator and Monte Carlo (`method.kind`)")]
-    Turn {
-        /// Name of the axis.
-        axis: String,
-    },
     /// Cell maps and Monte Carlo, at phases of a forcing that are not parts of one division of the period.
     #[error(
         "the phases that are watched are no parts of a period divided evenly by at most {MOST_PHASES}, at which trajectories are looked at: give fractions of a common denominator up to there"
@@ -205,7 +199,7 @@ fn has_densities(problem: &Problem) -> Result<(), MethodError> {
     let asks = !family.questions.passages.is_empty()
         || family.questions.slow_modes > 0
         || family.questions.spectrum.is_some();
-    if let (true, Some(axis)) = (asks, turn(problem, true)?) {
+    if let (true, Some(axis)) = (asks, turn(problem)?) {
         return Err(MethodError::TurnOfQuestion { axis });
     }
     let space = problem.space();
@@ -237,12 +231,10 @@ fn has_densities(problem: &Problem) -> Result<(), MethodError> {
     check_sticking(problem.family(), &ranges)
 }
 
-/// Name of an axis that closes on itself, an angle or, where that counts, the phase of a forcing.
-fn turn(problem: &Problem, counts_phase: bool) -> Result<Option<String>, MethodError> {
+/// Name of an axis that closes on itself, an angle or the phase of a forcing.
+fn turn(problem: &Problem) -> Result<Option<String>, MethodError> {
     for system in problem.family().along()? {
-        let facts = system.facts();
-        let mut turns = facts.turns.keys();
-        if let Some(&axis) = turns.find(|axis| counts_phase || facts.phase != Some(**axis)) {
+        if let Some(&axis) = system.facts().turns.keys().next() {
             return Ok(Some(problem.family().axis(axis).to_owned()));
         }
     }

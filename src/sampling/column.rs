@@ -1,6 +1,7 @@
 //! One cell's trajectories: where they end, by group, and the numerical diffusion they show.
 
 use super::SamplingOptions;
+use super::end_moments::EndMoments;
 use super::integrator::Stepper;
 use super::lookup::CellLookup;
 use super::phase::PhaseStep;
@@ -36,18 +37,6 @@ pub(super) struct Column {
     /// Mean square displacement by spreading a sample evenly over its end cell, an axis; samples in the sink
     /// are left out.
     pub(super) spreading: [f64; MAX_DIMENSION],
-}
-
-/// Sums over samples of one axis of their end points, plain and times where they started: what is needed to know
-/// moments one map step after any density that is linear in the cell.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct EndMoments {
-    /// Σ x and Σ x².
-    pub(super) plain: [f64; 2],
-    /// Σ x u_b and Σ x² u_b, u_b where the sample started along axis b.
-    pub(super) by_start: [[f64; 2]; MAX_DIMENSION],
-    /// Σ 1.
-    pub(super) count: f64,
 }
 
 /// Samples of a group by the end cells that they share.
@@ -165,7 +154,10 @@ impl<'a> ColumnSampler<'a> {
                     let start = offsets.map(|axis: Lanes| axis[lane] as f32);
                     starts.push(start);
                     if end != SINK {
-                        add_moments(&mut moments, &seen, lane, &start);
+                        let axes = self.space.axes().iter().zip(seen.iter());
+                        for (moments, (axis, lanes)) in moments.iter_mut().zip(axes) {
+                            moments.add(axis, lanes[lane], &start);
+                        }
                     }
                 }
             }
@@ -312,23 +304,5 @@ impl<'a> ColumnSampler<'a> {
                 *sum += own;
             }
         }
-    }
-}
-
-fn add_moments(
-    moments: &mut [EndMoments],
-    states: &[Lanes],
-    lane: usize,
-    start: &[f32; MAX_DIMENSION],
-) {
-    for (moments, lanes) in moments.iter_mut().zip(states) {
-        let x = lanes[lane];
-        moments.plain[0] += x;
-        moments.plain[1] += x * x;
-        for (sums, &start) in moments.by_start.iter_mut().zip(start) {
-            sums[0] += x * f64::from(start);
-            sums[1] += x * x * f64::from(start);
-        }
-        moments.count += 1.0;
     }
 }

@@ -25,6 +25,7 @@
 #[cfg(test)]
 mod accuracy_tests;
 mod column;
+mod end_moments;
 mod four_point;
 mod growth;
 mod integrator;

@@ -3,6 +3,7 @@
 use sprs::CsMat;
 
 use super::column::{Column, SINK};
+use super::end_moments::Means;
 use super::slopes::cell_slopes;
 use crate::MAX_DIMENSION;
 use crate::space::CellSpace;
@@ -155,8 +156,8 @@ impl SampledTransitions {
     }
 
     /// Diffusion that remains with densities linear in the cells, an axis, as [`Self::numerical_diffusion`]: by how
-    /// much the variance of the reconstructed density exceeds that of the end points which it is made of, over 2Δt. May
-    /// be slightly negative. `mass` and `slopes` are of the sampled cells; without kept starts the diffusion of flat
+    /// much the variance of the reconstructed density exceeds that of the end points which it is made of, over 2Δt, and
+    /// by how much its harmonics fall short of theirs along an angle. May be slightly negative. `mass` and `slopes` are of the sampled cells; without kept starts the diffusion of flat
     /// cells.
     pub fn remaining_diffusion(
         &self,
@@ -171,29 +172,15 @@ impl SampledTransitions {
             if self.phase == Some(axis) {
                 return 0.0;
             }
-            // Σ 1, Σ x, Σ x² of end points, and of the reconstructed density.
-            let (mut ends, mut cells) = ([0.0; 3], [0.0; 3]);
+            let edges = &space.axes()[axis];
+            let (mut ends, mut cells) = (Means::default(), Means::default());
             for (j, column) in self.columns.iter().enumerate() {
-                let (moments, slope) = (&column.ends[axis], &slopes[j]);
-                let samples = column.samples as f64;
-                let weighted = |power: usize| -> f64 {
-                    let by_start = moments.by_start.iter().zip(slope);
-                    moments.plain[power] + by_start.map(|(sums, s)| sums[power] * s).sum::<f64>()
-                };
-                ends[0] += mass[j] * moments.count / samples;
-                ends[1] += mass[j] * weighted(0) / samples;
-                ends[2] += mass[j] * weighted(1) / samples;
-                let edges = &space.axes()[axis];
+                let weight = mass[j] / column.samples as f64;
+                column.ends[axis].add_to(&mut ends, weight, &slopes[j]);
                 let position = space.position(self.cells[j], axis);
-                let (centre, width) = (edges.centre(position), edges.width(position));
-                // ∫ u (1 + s u) du = s/12 and ∫ u² (1 + s u) du = 1/12 over the cell.
-                let off = width * slope[axis] / 12.0;
-                cells[0] += mass[j];
-                cells[1] += mass[j] * (centre + off);
-                cells[2] += mass[j] * (centre * (centre + 2.0 * off) + width * width / 12.0);
+                cells.add_cell(edges, position, mass[j], slopes[j][axis]);
             }
-            let variance = |sums: [f64; 3]| sums[2] / sums[0] - (sums[1] / sums[0]).powi(2);
-            (variance(cells) - variance(ends)) / (2.0 * self.map_step)
+            ends.diffusion_to(&cells, edges) / self.map_step
         };
         (0..self.dimension).map(diffusion).collect()
     }

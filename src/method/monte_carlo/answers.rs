@@ -1,42 +1,12 @@
-//! What trajectories tell of phases and angles: the cells that they are counted into, moments at phases, amplitudes,
-//! mean velocities and effective diffusions.
+//! What trajectories tell of phases and angles: moments at phases, amplitudes, mean velocities and effective diffusions.
 
 use crate::continuation::Measure;
 use crate::continuation::measure::{TURN_DIFFUSION, VELOCITY};
-use crate::density::{EstimatedMoments, Moments, layout_axis};
-use crate::method::forcing::{Forced, parts_of_period};
-use crate::method::{MethodError, Problem};
+use crate::density::{EstimatedMoments, Moments};
+use crate::method::Problem;
+use crate::method::forcing::Forced;
 use crate::monte_carlo::{Estimate, StepBias};
-use crate::space::{Axis, CellSpace};
 use crate::system::System;
-
-/// Parts of a period at which a forced system is looked at, at least.
-const FEWEST_PARTS: usize = 32;
-
-/// The problem on cells that trajectories are counted into: even ones over a turn, those along a phase each for the
-/// phase at its beginning. Other axes keep what they have.
-///
-/// # Errors
-/// [`MethodError::Phases`].
-pub(super) fn seen_at_phases(problem: &Problem) -> Result<Problem, MethodError> {
-    let space = problem.space();
-    if !space.axes().iter().any(Axis::is_closed) {
-        return Ok(problem.clone());
-    }
-    let phase = problem.family().model().phase_axis();
-    let axes = space.axes().iter().enumerate();
-    let axes = axes.map(|(index, axis)| match phase == Some(index) {
-        true => Ok(Axis::turn(
-            axis.from(),
-            axis.to(),
-            parts_of_period(problem, FEWEST_PARTS)?,
-        )?),
-        false if axis.is_closed() => Ok(layout_axis(axis)),
-        false => Ok(axis.clone()),
-    });
-    let axes: Result<Vec<Axis>, MethodError> = axes.collect();
-    problem.on(CellSpace::new(axes?)?)
-}
 
 /// Mean and standard deviation of each axis at a phase, in the order of the phases that are watched.
 pub(super) fn at_phases(problem: &Problem, found: &Estimate) -> Vec<EstimatedMoments> {

@@ -1,13 +1,14 @@
 //! Free trajectories as a source of densities: the reference that shares neither cells' transitions nor solver with the
 //! other methods.
 
-use super::answers::{at_phases, rotations_and_answers, seen_at_phases};
+use super::answers::{at_phases, rotations_and_answers};
 use super::passages::Setting;
 use super::{Estimator, MonteCarloOptions, MonteCarloPlan};
 use crate::cancellation::Cancellation;
 use crate::continuation::measure::{ESCAPE_RATE, TIME_STEP_BIAS};
 use crate::continuation::{DensitySource, Finding, Session, Solution, Subject, Want};
 use crate::density::{EstimatedDensity, Moments};
+use crate::method::forcing::on_even_turns;
 use crate::method::measures::{Cells, Others};
 use crate::method::problem::Maps;
 use crate::method::report::Reporter;
@@ -18,6 +19,9 @@ use crate::monte_carlo::{
     EnsembleRun, ErgodicRun, Estimate, MonteCarloError, Relaxation, ensemble, ergodic, relaxation,
 };
 use crate::system::{SwitchingSurface, System};
+
+/// Parts of a period at which a forced system is looked at, at least.
+const FEWEST_PARTS: usize = 32;
 
 /// Name of the method in tables.
 const METHOD: &str = "monte-carlo";
@@ -49,7 +53,7 @@ impl MonteCarloSource {
         options: &MonteCarloOptions,
         cancellation: &Cancellation,
     ) -> Result<Self, MethodError> {
-        let problem = &seen_at_phases(problem)?;
+        let problem = &on_even_turns(problem, FEWEST_PARTS)?;
         let (systems, space) = (problem.family().along()?, problem.space());
         has_densities(problem)?;
         let is_forced = problem.family().model().phase_axis().is_some();

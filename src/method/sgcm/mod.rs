@@ -1,6 +1,8 @@
 //! Stochastic generalized cell mapping: its settings, what a point costs, the choice of its steps, the slope
 //! correction, the source, its session.
 
+#[cfg(test)]
+mod angles_tests;
 mod cost;
 mod options;
 mod phases;
@@ -10,6 +12,7 @@ mod session;
 mod slope_correction;
 mod source;
 mod steps;
+mod velocities;
 mod widening;
 
 pub(crate) use cost::SgcmCost;

@@ -6,11 +6,11 @@
 
 use crate::continuation::Measure;
 use crate::density::{EstimatedMoments, Moments, moments, phase_factors, times};
-use crate::method::forcing::{Forced, parts_of_period};
+use crate::method::forcing::Forced;
 use crate::method::report::Missing;
 use crate::method::{MethodError, Problem, StepChoice};
 use crate::sampling::part_of_period;
-use crate::space::{Axis, CellSpace, SpaceError};
+use crate::space::CellSpace;
 use crate::system::System;
 
 /// Cells along the phase, at least. Each costs a transition matrix over a map step. A density over the period is a mean
@@ -21,33 +21,6 @@ pub(crate) const FEWEST_PHASES: usize = 16;
 /// Integrator steps of a period, at least, where the step is left to the program: Heun's step then follows the forcing
 /// to 1e-3.
 const STEPS_OF_A_PERIOD: f64 = 64.0;
-
-/// The same cells with another axis in a place.
-pub(super) fn with_axis(
-    space: &CellSpace,
-    place: usize,
-    axis: &Axis,
-) -> Result<CellSpace, SpaceError> {
-    let mut axes = space.axes().to_vec();
-    axes[place] = axis.clone();
-    CellSpace::new(axes)
-}
-
-/// The problem on cells of which those along the phase stand for even parts of the period, among them all phases that
-/// are watched.
-///
-/// # Errors
-/// [`MethodError::Phases`].
-pub(super) fn on_phases(problem: &Problem) -> Result<Problem, MethodError> {
-    let Some(phase) = problem.family().model().phase_axis() else {
-        return Ok(problem.clone());
-    };
-    let space = problem.space();
-    let axis = &space.axes()[phase];
-    let parts = parts_of_period(problem, FEWEST_PHASES)?;
-    let axis = Axis::turn(axis.from(), axis.to(), parts)?;
-    problem.on(with_axis(space, phase, &axis)?)
-}
 
 /// How a forced system is mapped along a sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]

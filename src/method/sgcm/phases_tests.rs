@@ -8,7 +8,6 @@ use crate::method::generator::turns_tests::{forced, normal};
 use crate::method::monte_carlo::turns_tests::{assert_known, assert_standard, off, problem};
 use crate::method::{MethodError, Problem, StepChoice};
 use crate::space::Axis;
-use crate::system::TypedModel;
 
 fn solved(problem: &Problem, options: &SgcmOptions) -> Solution<'static> {
     let never = Cancellation::new();
@@ -159,7 +158,7 @@ fn what_is_solved_does_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
-fn phases_become_cells_and_angles_are_refused() {
+fn phases_become_cells() {
     let never = Cancellation::new();
     let by = |problem: &Problem| SgcmSource::new(problem, &SgcmOptions::default(), &never);
     // Twelfths and fifths: sixty parts of the period.
@@ -167,14 +166,4 @@ fn phases_become_cells_and_angles_are_refused() {
     assert_eq!(many.problem().space().axes()[1].count(), 60);
     let strange = by(&linear(10, &[(0, 0.123_456)])).map(drop).unwrap_err();
     assert!(matches!(strange, MethodError::Phases), "{strange}");
-    let rotor = TypedModel::new("rotor", "Rotor", ["phi"])
-        .with_equation("phi", "A - sin(phi)")
-        .with_noise("phi", ["1"])
-        .with_angle("phi", std::f64::consts::TAU)
-        .with_parameters(["A"]);
-    let pi = std::f64::consts::PI;
-    let axes = vec![Axis::fourier(-pi, pi, 8).unwrap()];
-    let angle = by(&problem((&rotor.build().unwrap(), &[]), 0.5, axes, &[]));
-    let words = angle.map(drop).unwrap_err().to_string();
-    assert!(words.contains("`phi` is an angle"), "{words}");
 }

@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::phases::{amplitudes, on_phases, with_axis};
+use super::phases::{FEWEST_PHASES, amplitudes};
 use super::slope_correction::{Corrected, solve_by};
 use super::steps::{Steps, choose_steps};
+use super::velocities::velocities;
 use super::widening::all_moments;
 use super::{Correction, SgcmOptions};
 use crate::MAX_DIMENSION;
@@ -15,6 +16,7 @@ use crate::cancellation::{Cancellation, Cancelled};
 use crate::continuation::measure::{ESCAPE_RATE, MAP_STEP, TIME_STEP_BIAS};
 use crate::continuation::{Finding, Solution, Subject};
 use crate::density::{EstimatedDensity, moments};
+use crate::method::forcing::on_even_turns;
 use crate::method::measures::{Cells, Others};
 use crate::method::problem::Maps;
 use crate::method::report::Reporter;
@@ -83,7 +85,7 @@ impl SgcmSource {
         options: &SgcmOptions,
         cancellation: &Cancellation,
     ) -> Result<Self, MethodError> {
-        let problem = &on_phases(problem)?;
+        let problem = &on_even_turns(problem, FEWEST_PHASES)?;
         let steps = choose_steps(problem, options, cancellation)?;
         Ok(Self {
             problem: problem.checked_by(SgcmOptions::CELL_CHECK),
@@ -101,17 +103,17 @@ impl SgcmSource {
         self.problem.space().n_cells()
     }
 
-    /// The same source on other cells over the same ranges, with the steps and the phases that were chosen.
+    /// The same source on other cells over the same ranges, with the steps that were chosen, and cells along phases and angles as they
+    /// are.
     ///
     /// # Errors
     /// [`MethodError`] when the cells have another number of axes.
     pub(crate) fn on(&self, space: &CellSpace) -> Result<Self, MethodError> {
         let check = self.problem.subject().cell_check;
         let own = self.problem.space().axes();
-        let space = &match self.problem.family().model().phase_axis() {
-            Some(phase) => with_axis(space, phase, &own[phase])?,
-            None => space.clone(),
-        };
+        let axes = space.axes().iter().zip(own);
+        let axes = axes.map(|(other, own)| if own.is_closed() { own } else { other });
+        let space = &CellSpace::new(axes.cloned().collect())?;
         let problem = self.problem.on(space.clone())?.checked_by(check);
         let mut steps = self.steps.clone();
         // Cells to grow from; all others that hold mass are reached from them.
@@ -279,6 +281,8 @@ impl SgcmSource {
         let doubts = (share, reporter.missing());
         let answers = amplitudes(&self.problem, system, masses, doubts);
         reporter.report.measures.extend(answers);
+        let turning = velocities(&self.problem, system, masses, doubts);
+        reporter.report.measures.extend(turning);
         reporter.replicates(replicates.len(), transitions.groups());
         let solution = reporter.solution(
             densities,

@@ -6,7 +6,7 @@ use super::phases::PhaseMap;
 use crate::cancellation::Cancellation;
 use crate::method::structure::{closed_ends, kinked_surfaces};
 use crate::method::time_step::time_step;
-use crate::method::{MethodError, Problem, StepChoice, has_densities, turn};
+use crate::method::{MethodError, Problem, StepChoice, has_densities};
 use crate::monte_carlo::{Relaxation, StepBias, TOLERATED_BIAS, relaxation};
 use crate::sampling::{Pilot, pilot};
 use crate::system::SwitchingSurface;
@@ -38,9 +38,6 @@ pub(super) fn choose_steps(
     cancellation: &Cancellation,
 ) -> Result<Steps, MethodError> {
     let (systems, space) = (problem.family().along()?, problem.space());
-    if let Some(axis) = turn(problem, false)? {
-        return Err(MethodError::Turn { axis });
-    }
     has_densities(problem)?;
     let (mut pilots, mut relaxed) = (Vec::<Pilot>::new(), Vec::<Relaxation>::new());
     for system in &systems {

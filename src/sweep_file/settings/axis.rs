@@ -51,10 +51,10 @@ impl AxisSettings {
             Some(Modes::Auto) => return None,
             Some(Modes::Number(count)) => return Some(self.series.axis((from, to), count)),
             None if self.series == ModesOf::Turn => {
-                // Of all axes that close on themselves SGCM maps the phase of a forcing alone.
+                // The phase of a forcing runs from 0 to 1, an angle has its zero in the middle.
                 let count = match method {
-                    MethodKind::Sgcm => FEWEST_PHASES,
-                    MethodKind::Generator | MethodKind::MonteCarlo => BINS_OF_A_TURN,
+                    MethodKind::Sgcm if from == 0.0 => FEWEST_PHASES,
+                    _ => BINS_OF_A_TURN,
                 };
                 return Some(Axis::turn(from, to, count));
             }
