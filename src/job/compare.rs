@@ -40,7 +40,7 @@ impl<'a> CompareJob<'a> {
                 "`{}` closes on itself, and the method of the file has no harmonics for the generator",
                 sweep.problem.family().axis(axis)
             );
-            let remedy = "set `method.kind = \"generator\"`: Monte Carlo is compared with it whatever is set";
+            let remedy = "set `method.kind = \"generator\"`: the others are compared with it whatever is set";
             return Err(Diagnostic::new(title).remedy(remedy).into());
         }
         Ok(Self {

@@ -3,9 +3,7 @@
 
 use super::along::SweptSystems;
 use super::axis::{AxisSettings, Grade};
-use super::axis_checks::{
-    check_modes, refuse_cells, refuse_turns, warn_of_few_cells, warn_of_idle_grade,
-};
+use super::axis_checks::{check_modes, refuse_cells, warn_of_few_cells, warn_of_idle_grade};
 use super::equations::model_in_words;
 use super::modes_of::ModesOf;
 use crate::method::fixed_surfaces;
@@ -42,9 +40,6 @@ pub(super) fn read(
         }
     }
     let along = family.map(|family| SweptSystems::new(family, draft));
-    if let Some(along) = &along {
-        refuse_turns(reader, draft, model, along)?;
-    }
     // Every axis is read, so that all that is wrong is reported at once.
     let read: Vec<Option<AxisSettings>> = names
         .iter()

@@ -3,9 +3,8 @@
 use super::AxisSettings;
 use super::along::{SweptSystems, filter};
 use crate::sweep_file::diagnostic::Diagnostic;
-use crate::sweep_file::draft::{Draft, MethodKind};
+use crate::sweep_file::draft::MethodKind;
 use crate::sweep_file::reader::Reader;
-use crate::system::Model;
 
 /// Cells an axis below which a density along it has no shape: a peak is a cell that is higher than both of its
 /// neighbours.
@@ -50,34 +49,6 @@ pub(super) fn warn_of_idle_grade(
             "leave it out, or give `cells.{name}.count` to have cells instead of modes"
         ));
     reader.warn(found);
-}
-
-/// Reports angles where the chosen method maps cells.
-pub(super) fn refuse_turns(
-    reader: &mut Reader<'_>,
-    draft: &Draft,
-    model: &Model,
-    along: &SweptSystems<'_>,
-) -> Option<()> {
-    let method = draft.method.kind;
-    let is_angle = |axis: &usize| along.turn(*axis).is_some() && model.phase_axis() != Some(*axis);
-    let turn = (0..model.axes.len()).find(is_angle);
-    let axis = match turn {
-        Some(axis) if method == MethodKind::Sgcm => &model.axes[axis].name,
-        _ => return Some(()),
-    };
-    let title = format!(
-        "`{axis}` closes on itself, and {} maps no angles",
-        method.name()
-    );
-    let found = Diagnostic::new(title).remedy(
-        "use `method.kind = \"generator\"`, where harmonics carry angles, or \"monte-carlo\", whose trajectories go round",
-    );
-    reader.report(match reader.place(&["method", "kind"]) {
-        Some(place) => found.at(place, "not for this system"),
-        None => found,
-    });
-    None
 }
 
 /// Reports cells along an axis that closes on itself: harmonics carry it.
