@@ -19,8 +19,8 @@ use crate::system::{Family, System};
 /// Distance of a phase from a part of the period that is rounding, in parts.
 const SAME_PHASE: f64 = 1e-9;
 
-/// The problem on even cells over all that closes on itself: along the phase of a forcing so many at least, each for the
-/// phase at its beginning, along an angle those that densities are laid out on. Other axes keep what they have.
+/// The problem on even cells over all that closes on itself: along the phase of a forcing so many at least, each for
+/// the phase at its beginning, along an angle those that densities are laid out on. Other axes keep what they have.
 ///
 /// # Errors
 /// [`MethodError::Phases`].

@@ -157,8 +157,8 @@ impl SampledTransitions {
 
     /// Diffusion that remains with densities linear in the cells, an axis, as [`Self::numerical_diffusion`]: by how
     /// much the variance of the reconstructed density exceeds that of the end points which it is made of, over 2Δt, and
-    /// by how much its harmonics fall short of theirs along an angle. May be slightly negative. `mass` and `slopes` are of the sampled cells; without kept starts the diffusion of flat
-    /// cells.
+    /// by how much its harmonics fall short of theirs along an angle. May be slightly negative. `mass` and `slopes` are
+    /// of the sampled cells; without kept starts the diffusion of flat cells.
     pub fn remaining_diffusion(
         &self,
         space: &CellSpace,

@@ -1,4 +1,5 @@
-//! What trajectories tell of phases and angles: moments at phases, amplitudes, mean velocities and effective diffusions.
+//! What trajectories tell of phases and angles: moments at phases, amplitudes, mean velocities and effective
+//! diffusions.
 
 use crate::continuation::Measure;
 use crate::continuation::measure::{TURN_DIFFUSION, VELOCITY};

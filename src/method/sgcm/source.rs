@@ -103,8 +103,8 @@ impl SgcmSource {
         self.problem.space().n_cells()
     }
 
-    /// The same source on other cells over the same ranges, with the steps that were chosen, and cells along phases and angles as they
-    /// are.
+    /// The same source on other cells over the same ranges, with the steps that were chosen, and cells along phases and
+    /// angles as they are.
     ///
     /// # Errors
     /// [`MethodError`] when the cells have another number of axes.

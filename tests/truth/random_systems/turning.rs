@@ -3,8 +3,8 @@
 //!
 //! - Under a force: u = h(x) = a x + e x² + x³ is linear, u' = -k u + A cos(w t) + √(2 D) ξ. At each phase u is normal,
 //!   and p(x) = h'(x) N(h(x)) has peaks of its own, as has the density over the period.
-//! - An angle: φ' = τ - U'(φ) with noise of the intensity s (1 + r cos(φ - ψ)), which carries a current. The test solves
-//!   a p - (B p)'/2 = J by collocation at 161 places.
+//! - An angle: φ' = τ - U'(φ) with noise of the intensity s (1 + r cos(φ - ψ)), which carries a current. The test
+//!   solves a p - (B p)'/2 = J by collocation at 161 places.
 //! - A rotor: φ'' = -γ φ' - U'(φ) + √(2 γ T) ξ, p ∝ exp(-U/T).
 //!
 //! Changes are folds: where two extrema of p meet, the extremum of p' between them passes zero.
