@@ -45,10 +45,10 @@ impl SgcmOptions {
     /// Bytes at work at a point with so many entries of the transition matrix, in so many cells.
     pub(crate) fn bytes(&self, transitions: f64, cells: f64, dimension: usize) -> f64 {
         let (starts, moments) = match self.correction {
-            // Moments of the end points by start, 11 numbers an axis, and slopes.
+            // Moments of the end points by start, 21 numbers an axis, and slopes.
             Correction::Slope => (
                 4.0 * dimension as f64,
-                11.0 * dimension as f64 + 2.0 * MAX_DIMENSION as f64,
+                21.0 * dimension as f64 + 2.0 * MAX_DIMENSION as f64,
             ),
             Correction::None => (0.0, 0.0),
         };
