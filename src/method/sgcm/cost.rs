@@ -86,10 +86,10 @@ mod tests {
             plain.cost(10.0, 2).least_bytes,
             10.0 * (4.0 * 104.0 + 128.0)
         );
-        // Slopes: 2·4 bytes more a count and transition, 8·(2·11 + 8) a cell.
+        // Slopes: 2·4 bytes more a count and transition, 8·(2·21 + 8) a cell.
         assert_eq!(
             options.cost(10.0, 2).most_bytes,
-            11_680.0 + 10.0 * (10.0 * 72.0 + 240.0)
+            11_680.0 + 10.0 * (10.0 * 72.0 + 400.0)
         );
     }
 
