@@ -7,6 +7,7 @@
 use super::Point;
 use super::events::{Event, events};
 use super::follow::{Course, Crossing, follow};
+use super::root::root;
 use crate::topology::{Detector, FeatureKind, Indicator, IndicatorKind, Signature};
 
 /// A change of one observable's signature between two neighbouring points.
@@ -179,19 +180,42 @@ fn decisive(
         let density = &points[index].densities[observable];
         density.structure.profile.is_some()
     };
+    match is_exact(gap.0) && is_exact(gap.1) {
+        true => where_count_changes(points, detector, observable, gap, event, first),
+        false => first,
+    }
+}
+
+/// What follows an event where counts follow from the equations: what was followed first, if the count changes with it,
+/// or the inflection beside the kink. A pair exists as long as the density rises anywhere between its peak and its
+/// valley, at the kink or beside it: where the count changes with both, the one that keeps the pair longer decides.
+fn where_count_changes(
+    points: &[&Point],
+    detector: &dyn Detector,
+    observable: usize,
+    gap: (usize, usize),
+    event: &Event,
+    first: Option<Course>,
+) -> Option<Course> {
     let holds = |found: &Option<Course>| match found {
         Some(Course::Crossing(crossing)) => separates(points, crossing, event.above),
         _ => false,
     };
-    if !(is_exact(gap.0) && is_exact(gap.1)) || holds(&first) {
-        return first;
-    }
-    let other = event.at_inflection()?;
+    let is_held = holds(&first);
+    let Some(other) = event.at_inflection() else {
+        return first.filter(|_| is_held);
+    };
     let second = follow(points, detector, observable, gap, &other);
-    match (holds(&second), first) {
-        (true, _) => second,
-        (false, Some(Course::Crossing(_))) => None,
-        (false, first) => first,
+    match (is_held, holds(&second), first, second) {
+        (true, true, Some(Course::Crossing(kink)), Some(Course::Crossing(inflection))) => {
+            let at = |one: &Crossing| root(points, one, detector.confidence()).value;
+            let is_longer = (at(&inflection) < at(&kink)) == event.above;
+            Some(Course::Crossing(if is_longer { inflection } else { kink }))
+        }
+        (true, _, first, _) => first,
+        (false, true, _, second) => second,
+        (false, false, Some(Course::Crossing(_)), _) => None,
+        (false, false, first, _) => first,
     }
 }
 

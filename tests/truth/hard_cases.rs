@@ -58,6 +58,8 @@ const CASES: &[Case] = &[
         Partly(0, "a wider range of y")),
     case("two_folds", "", "three peaks become one by two folds inside one step",
         &[("x", -0.507_233_543_5), ("x", -0.497_240_265_5), ("x", 0.497_240_265_5), ("x", 0.507_233_543_5)], Located),
+    case("corner_beside_fold", "", "a pair born 4e-5 before its valley passes a corner of the noise",
+        &[("x", -0.469_053_889_264_059), ("x", 0.225_807_889_264_059)], Located),
     case("deep_wells", "", "`bistable`, σ² = 0.01", &[("x", 0.0)], Located),
     case("tilted", "system.noise.x=\"sqrt(0.03)\" cells.x.count=200", "a tilted well, σ² = 0.03, 200 cells",
         &[("x", -FOLD), ("x", FOLD)], Located),
