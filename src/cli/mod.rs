@@ -26,6 +26,7 @@ mod stored;
 mod sweep;
 mod systems;
 mod terminal;
+mod usage;
 mod verify;
 
 use std::error::Error as _;
@@ -137,6 +138,7 @@ pub fn run_with(words: impl IntoIterator<Item = OsString>) -> u8 {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and the version come this way too, with code 0. A closed pipe is no failure.
+            let error = usage::with_tip(error);
             let _ = error.print();
             return u8::try_from(error.exit_code()).unwrap_or(2);
         }

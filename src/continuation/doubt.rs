@@ -85,6 +85,8 @@ pub enum Doubt {
     FewModes(f64),
     /// The drift jumps along an axis at a place inside cells: the shape of the density follows where in its cell.
     JumpInsideCells(usize, f64),
+    /// Noise along an axis dies at an end, and this share of the mass lies in the cells beside it.
+    NaturalEnd(usize, f64, f64),
     /// What leaves Ω moves the value by so much, more than the tolerance; and what would hold it.
     Leak(f64, WiderRange),
     /// Samples leave the value uncertain by so much, more than the tolerance.
@@ -173,6 +175,7 @@ impl Doubt {
             | Self::Unsound(..)
             | Self::FewModes(_)
             | Self::JumpInsideCells(..)
+            | Self::NaturalEnd(..)
             | Self::Leak(..)
             | Self::FewSamples(_)
             | Self::UnevenFits(_)
@@ -191,6 +194,7 @@ impl Doubt {
         match *finding {
             Finding::FewModes { change } => Some(Self::FewModes(change)),
             Finding::JumpInsideCells { axis, at } => Some(Self::JumpInsideCells(axis, at)),
+            Finding::NaturalEnd { axis, mass, at } => Some(Self::NaturalEnd(axis, at, mass)),
             _ => None,
         }
     }

@@ -72,6 +72,16 @@ pub enum Finding {
         /// The axis' range.
         range: [f64; 2],
     },
+    /// Noise along an axis dies at an end of its range, and the cells beside it hold too much mass: the density goes
+    /// there like a power of the distance, which cells do not follow.
+    NaturalEnd {
+        /// The axis.
+        axis: usize,
+        /// Mass in the cells beside the end.
+        mass: f64,
+        /// Where the end is.
+        at: f64,
+    },
     /// A watched density is negative somewhere: it has wiggles that the cells do not resolve.
     NegativeDensity {
         /// Σ |min(mass, 0)| of the worst of the watched densities.

@@ -4,7 +4,7 @@ use super::GeneratorOptions;
 use super::modes::ModeAxis;
 use super::scheme::{AdvectiveScheme, DAMPING_BESIDE_MODES, Dissipation, REACH, Window};
 use crate::space::{Axis, CellSpace, Series};
-use crate::system::System;
+use crate::system::{System, closed_ends};
 
 /// What lies beyond an end of the axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,15 +69,15 @@ impl AxisGeometry {
             false => breaks(system, index, space),
         };
         let end = |wall: bool| if wall { End::Wall } else { End::Open };
+        let ranges: Vec<(f64, f64)> = (space.axes().iter())
+            .map(|axis| (axis.from(), axis.to()))
+            .collect();
         Self {
             nodes: axis.nodes().to_vec(),
             widths: (0..count).map(|cell| axis.node_stretch(cell)).collect(),
             edges: axis.edges().to_vec(),
             face_widths: (0..=count).map(|face| axis.edge_stretch(face)).collect(),
-            ends: system
-                .facts()
-                .walls(index, (axis.from(), axis.to()))
-                .map(end),
+            ends: closed_ends(system, index, &ranges).map(end),
             stencils: (0..=count)
                 .map(|face| stencil(scheme, damping, (face, count), &breaks))
                 .collect(),

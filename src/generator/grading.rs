@@ -1,7 +1,7 @@
 //! Axes graded toward switching surfaces, fine enough for the layer in which the kink of the density lives.
 
 use crate::space::Grading;
-use crate::system::{SwitchingSurface, System};
+use crate::system::{SwitchingSurface, System, natural_ends};
 
 /// Smallest cell, in thicknesses of the layer. At a quarter the slope law p'(0+)/p(0) = -2 f_c/σ² holds to
 /// half a per cent with 100 cells (docs/accuracy.md).
@@ -21,6 +21,10 @@ const BESIDE: f64 = 1e-5;
 /// Smallest cell at a wall that a coordinate without noise creeps up to, as a share of the uniform width.
 const WALL_SHARE: f64 = 0.2;
 
+/// Smallest cell at an end at which the noise dies, as a share of the uniform width: there the density goes like a
+/// power of the distance.
+const NATURAL_SHARE: f64 = 1.0 / 64.0;
+
 /// Places along every other axis where the force across a surface is looked at.
 const PLACES: usize = 9;
 
@@ -30,6 +34,8 @@ const PLACES: usize = 9;
 /// smallest cell is a share of that thickness for the root mean square drift over the other axes' `ranges`
 /// (one range an axis, in the system's order). Where the drift does not jump across the surface there is no such layer,
 /// and the cells become somewhat narrower only.
+///
+/// An axis is graded toward ends at which its noise dies, too.
 ///
 /// An axis without noise is graded toward its walls: under steady sliding Dahl's z nears them exponentially,
 /// 1 - |z|λ/f_c shrinking by e for every f_c/λ that x moves, and so do the widths of what the density shows.
@@ -49,15 +55,28 @@ pub fn automatic_grading(
         return toward_walls(system, axis, (from, to), count);
     }
     let inside = |at: &f64| *at > from && *at < to;
-    let mut at: Vec<f64> = system.facts().surfaces_on(axis).filter(inside).collect();
-    at.sort_by(f64::total_cmp);
-    at.dedup();
+    let surfaces = system.facts().surfaces_on(axis).filter(inside);
     let uniform = (to - from) / count as f64;
-    let wanted = at.iter().map(|&at| match layer(system, ranges, axis, at) {
-        Some(thickness) => LAYER_SHARE * thickness,
-        None => BEND_SHARE * uniform,
+    let wanted = surfaces.map(|at| match layer(system, ranges, axis, at) {
+        Some(thickness) => (at, LAYER_SHARE * thickness),
+        None => (at, BEND_SHARE * uniform),
     });
-    let smallest = wanted.fold(f64::INFINITY, f64::min);
+    // Of one axis quadrature follows every power.
+    let natural = match ranges.len() {
+        1 => [false; 2],
+        _ => natural_ends(system, axis, ranges),
+    };
+    let natural = natural.into_iter().zip([from, to]);
+    let natural = natural.filter(|(is_natural, _)| *is_natural);
+    let mut wanted: Vec<(f64, f64)> = wanted
+        .chain(natural.map(|(_, end)| (end, NATURAL_SHARE * uniform)))
+        .collect();
+    wanted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let smallest = wanted
+        .iter()
+        .fold(f64::INFINITY, |least, one| least.min(one.1));
+    let mut at: Vec<f64> = wanted.into_iter().map(|(at, _)| at).collect();
+    at.dedup();
     (smallest > 0.0 && smallest < uniform).then_some(Grading { at, smallest })
 }
 

@@ -2,13 +2,16 @@
 
 use super::geometry::surface_faces;
 use crate::space::CellSpace;
-use crate::system::{LANES, SwitchingSurface, System};
+use crate::system::{LANES, SwitchingSurface, System, natural_ends};
 
 /// Share of the heaviest mass density below which a cell does not count.
 const WEIGHT: f64 = 1e-4;
 
 /// Distance from a surface, as a share of a cell, at which the drift on its two sides is taken.
 const BESIDE: f64 = 1e-6;
+
+/// Cells beside an end at which the noise dies that are not judged.
+const BESIDE_NATURAL_END: usize = 4;
 
 /// Jump of the drift across a surface, as a share of the drift, below which no layer is looked for.
 const NO_JUMP: f64 = 1e-3;
@@ -22,7 +25,8 @@ pub(crate) struct Resolution {
     /// scheme, which is accurate as long as the density itself is smooth on the grid.
     pub peclet: f64,
     /// The same of the drift less its mean along the grid line: damping and friction, which shape the density
-    /// along this axis. Above 1 the density changes by more than e² from cell to cell.
+    /// along this axis; of the whole drift where noise dies at an end of the axis, but for the cells beside it. Above 1
+    /// the density changes by more than e² from cell to cell.
     pub fitted_peclet: f64,
     /// Mass-weighted root mean square of |a| h/D in the cells beside switching surfaces: cell width over the
     /// thickness of the layer that holds the kink. `None` without a surface, on a face of the axis, across which the
@@ -60,11 +64,14 @@ fn judge(system: &dyn System, space: &CellSpace, masses: &[f64], index: usize) -
     let lightest = WEIGHT * densities.iter().copied().fold(0.0, f64::max);
     let counts = |cell: usize| densities[cell] > lightest;
     let stride: usize = space.shape()[index + 1..].iter().product();
+    let axes = space.axes().iter();
+    let ranges: Vec<(f64, f64)> = axes.map(|axis| (axis.from(), axis.to())).collect();
     let mut seen = LineSurvey {
         system,
         space,
         index,
         faces: surface_faces(system, index, axis),
+        natural: natural_ends(system, index, &ranges),
         peclet: 0.0,
         fitted_peclet: 0.0,
         layer: 0.0,
@@ -124,6 +131,8 @@ struct LineSurvey<'a> {
     index: usize,
     /// Faces of the axis on switching surfaces.
     faces: Vec<usize>,
+    /// Ends at which the noise along the axis dies.
+    natural: [bool; 2],
     peclet: f64,
     fitted_peclet: f64,
     /// Σ of mass × (|a| h/D)² and of mass in the cells beside jumps.
@@ -138,18 +147,33 @@ impl LineSurvey<'_> {
         let drifts = self.drifts(cells);
         let weighted = drifts.iter().enumerate();
         let weighted = weighted.map(|(position, drift)| drift * axis.width(position));
-        let mean = weighted.sum::<f64>() / (axis.to() - axis.from());
+        // Where noise dies toward an end, a mean drift would be endlessly strong against it there.
+        let mean = match self.natural {
+            [false, false] => weighted.sum::<f64>() / (axis.to() - axis.from()),
+            _ => 0.0,
+        };
         for (position, (&cell, mass)) in cells.iter().zip(masses).enumerate() {
             let Some(mass) = mass else { continue };
             let diffusion = diffusion_at(self.system, self.space, self.index, cell);
             let (drift, scale) = (drifts[position], axis.width(position) / diffusion);
             self.peclet = self.peclet.max(0.5 * drift.abs() * scale);
-            self.fitted_peclet = self.fitted_peclet.max(0.5 * (drift - mean).abs() * scale);
+            if !self.is_beside_natural_end(position) {
+                let fitted = 0.5 * (drift - mean).abs() * scale;
+                self.fitted_peclet = self.fitted_peclet.max(fitted);
+            }
             if self.is_beside_jump(cell, position, drift) {
                 self.layer += mass * (drift * scale).powi(2);
                 self.weight += mass;
             }
         }
+    }
+
+    /// Whether a cell lies so near to an end at which the noise dies that the density goes like a power of the distance
+    /// there, whose changes from cell to cell say nothing of the width of cells.
+    fn is_beside_natural_end(&self, position: usize) -> bool {
+        let beyond = self.space.axes()[self.index].count() - 1 - position;
+        let [lower, upper] = self.natural;
+        (lower && position < BESIDE_NATURAL_END) || (upper && beyond < BESIDE_NATURAL_END)
     }
 
     /// The drift along the axis in the middle of cells.

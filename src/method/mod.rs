@@ -29,6 +29,7 @@ mod generator;
 mod lattice;
 mod measures;
 mod monte_carlo;
+mod natural_ends;
 mod neighbours;
 mod options;
 mod problem;
@@ -58,7 +59,7 @@ pub(crate) use monte_carlo::MonteCarloCost;
 pub use monte_carlo::{Estimator, MonteCarloOptions, MonteCarloSource};
 pub use options::MethodOptions;
 pub use problem::Problem;
-pub(crate) use range::{PILOT_BOX, RangeError, automatic_ranges};
+pub(crate) use range::{KnownEnds, RangeError, automatic_ranges, pilot_box};
 #[cfg(feature = "store")]
 pub(crate) use sgcm::FEWEST_PHASES;
 pub(crate) use sgcm::SgcmCost;

@@ -1,5 +1,5 @@
 //! A range that holds the density, found by free trajectories: the box is doubled until they stay in it, shrunk while
-//! they fill only a corner of it, and given a margin.
+//! they fill only a corner of it, and given a margin. An end that is given stays where it is.
 
 use std::sync::Arc;
 
@@ -7,10 +7,10 @@ use super::swap::swaps;
 use crate::cancellation::Cancellation;
 use crate::sampling::pilot;
 use crate::space::{Axis, CellSpace};
-use crate::system::System;
+use crate::system::{Enclosed, System};
 
 /// Where trajectories start along an axis of which nothing is known.
-pub(crate) const PILOT_BOX: (f64, f64) = (-1.0, 1.0);
+const PILOT_BOX: (f64, f64) = (-1.0, 1.0);
 /// Cells an axis of the box in which visits are counted.
 const CELLS: usize = 64;
 /// Share of the recorded states that must lie in the box.
@@ -23,6 +23,8 @@ const FILLED: f64 = 0.2;
 const MARGIN: f64 = 1.5;
 /// Most times that the box is changed.
 const MOST_CHANGES: usize = 40;
+/// Most times that the box is shrunk toward an end that is given, by 32 each time where all visits are in one cell.
+const MOST_SHRUNK: usize = 12;
 /// Most steps of each trajectory in all boxes together: those of ten that take the most that one box may.
 const MOST_STEPS: usize = 2_000_000;
 
@@ -57,19 +59,62 @@ pub(crate) enum RangeError {
     Cancelled(#[from] crate::cancellation::Cancelled),
 }
 
-/// Ranges, one an axis, that hold the densities of all the systems, as known or found; `None` for an axis means that it
-/// is to be found.
+/// The lower and the upper end of an axis, as far as they are known.
+pub(crate) type KnownEnds = [Option<f64>; 2];
+
+/// Where trajectories start along an axis: as long as the box of an axis of which nothing is known, unless both ends
+/// are.
+pub(crate) fn pilot_box(known: KnownEnds) -> (f64, f64) {
+    let length = PILOT_BOX.1 - PILOT_BOX.0;
+    match known {
+        [Some(from), Some(to)] => (from, to),
+        [Some(from), None] => (from, from + length),
+        [None, Some(to)] => (to - length, to),
+        [None, None] => PILOT_BOX,
+    }
+}
+
+/// A range with the ends that are known.
+fn with_known((from, to): (f64, f64), known: KnownEnds) -> (f64, f64) {
+    (known[0].unwrap_or(from), known[1].unwrap_or(to))
+}
+
+/// A range twice as long, about its middle, or away from the end that is known.
+fn doubled((from, to): (f64, f64), known: KnownEnds) -> (f64, f64) {
+    let length = to - from;
+    match known {
+        [None, None] => (from - 0.5 * length, to + 0.5 * length),
+        _ => with_known((from - length, to + length), known),
+    }
+}
+
+/// The system with walls at ends that are given alone: what crosses them tells nothing of the other end.
+fn between_given_ends(system: &Arc<dyn System>, known: &[KnownEnds]) -> Arc<dyn System> {
+    let mut walls = system.facts().reflecting.clone();
+    for (axis, ends) in known.iter().enumerate() {
+        let wall = match ends {
+            [Some(from), None] => (*from, f64::INFINITY),
+            [None, Some(to)] => (f64::NEG_INFINITY, *to),
+            _ => continue,
+        };
+        walls.insert(axis, wall);
+    }
+    Arc::new(Enclosed::reflecting(Arc::clone(system), &walls))
+}
+
+/// Ranges, one an axis, that hold the densities of all the systems, with the ends that are known.
 ///
 /// # Errors
 /// [`RangeError`].
 pub(crate) fn automatic_ranges(
     systems: &[Arc<dyn System>],
-    known: &[Option<(f64, f64)>],
+    known: &[KnownEnds],
     seed: u64,
     cancellation: &Cancellation,
 ) -> Result<Vec<(f64, f64)>, RangeError> {
     let mut hull: Option<Vec<(f64, f64)>> = None;
     for (number, system) in systems.iter().enumerate() {
+        let system = between_given_ends(system, known);
         let found = ranges_of((number, system.as_ref()), known, seed, cancellation)?;
         hull = Some(match hull {
             None => found,
@@ -85,18 +130,18 @@ pub(crate) fn automatic_ranges(
     }
     let rounded = hull.iter().flatten().zip(known);
     Ok(rounded
-        .map(|(&found, known)| known.unwrap_or_else(|| outward(found)))
+        .map(|(&found, &known)| with_known(outward(found), known))
         .collect())
 }
 
-/// Gives axes that may be exchanged in all the systems one range, where neither's is known.
-fn alike(systems: &[Arc<dyn System>], known: &[Option<(f64, f64)>], hull: &mut [(f64, f64)]) {
+/// Gives axes that may be exchanged in all the systems one range, where as much is known of both.
+fn alike(systems: &[Arc<dyn System>], known: &[KnownEnds], hull: &mut [(f64, f64)]) {
     let Some((first, others)) = systems.split_first() else {
         return;
     };
     for pair in swaps(first.as_ref(), hull) {
         let (a, b) = pair;
-        let is_free = known[a].is_none() && known[b].is_none();
+        let is_free = known[a] == known[b];
         let is_always = || {
             others
                 .iter()
@@ -111,19 +156,20 @@ fn alike(systems: &[Arc<dyn System>], known: &[Option<(f64, f64)>], hull: &mut [
 
 fn ranges_of(
     (number, system): (usize, &dyn System),
-    known: &[Option<(f64, f64)>],
+    known: &[KnownEnds],
     seed: u64,
     cancellation: &Cancellation,
 ) -> Result<Vec<(f64, f64)>, RangeError> {
     let (mut steps, mut leaving) = (0, 0);
-    let mut ranges: Vec<(f64, f64)> = known.iter().map(|k| k.unwrap_or(PILOT_BOX)).collect();
+    let mut shrunk = vec![0; known.len()];
+    let mut ranges: Vec<(f64, f64)> = known.iter().copied().map(pilot_box).collect();
     for _ in 0..MOST_CHANGES {
         let axes: Result<Vec<Axis>, _> = ranges
             .iter()
             .map(|&(from, to)| Axis::uniform(from, to, CELLS))
             .collect();
         let space = CellSpace::new(axes?)?;
-        let free = || (0..ranges.len()).filter(|&axis| known[axis].is_none());
+        let free = || (0..ranges.len()).filter(|&axis| known[axis].contains(&None));
         if steps >= MOST_STEPS {
             return Err(RangeError::TooLong {
                 system: number,
@@ -140,32 +186,45 @@ fn ranges_of(
             .unwrap_or(0);
         if seen.share_inside < INSIDE {
             for axis in free().collect::<Vec<_>>() {
-                let (from, to) = ranges[axis];
-                let half = to - from;
-                ranges[axis] = (from - 0.5 * half, to + 0.5 * half);
+                ranges[axis] = doubled(ranges[axis], known[axis]);
             }
             continue;
         }
         let visited = extents(&space, &seen.cells);
+        let visited: Vec<(f64, f64)> = visited
+            .into_iter()
+            .zip(known)
+            .map(|(range, &known)| with_known(range, known))
+            .collect();
         let narrow: Vec<usize> = free()
             .filter(|&axis| {
                 let length = ranges[axis].1 - ranges[axis].0;
-                visited[axis].1 - visited[axis].0 < FILLED * length
+                let is_narrow = visited[axis].1 - visited[axis].0 < FILLED * length;
+                is_narrow && !ends_there(known[axis], shrunk[axis])
             })
             .collect();
         if narrow.is_empty() {
-            return Ok(widened(system, &visited, known));
+            let mut found = widened(system, &visited, known);
+            for axis in free().filter(|&axis| ends_there(known[axis], shrunk[axis])) {
+                found[axis] = pilot_box(known[axis]);
+            }
+            return Ok(found);
         }
         for axis in narrow {
-            let (from, to) = visited[axis];
-            let half = to - from;
-            ranges[axis] = (from - 0.5 * half, to + 0.5 * half);
+            ranges[axis] = doubled(visited[axis], known[axis]);
+            shrunk[axis] += 1;
         }
     }
     Err(RangeError::RunsAway {
         system: number,
         axis: leaving,
     })
+}
+
+/// Whether trajectories end where an end was given alone: however near to it one looks, they are nearer. Such a system
+/// says nothing of the other end, and the solve tells that there is no density.
+fn ends_there(known: KnownEnds, shrunk: usize) -> bool {
+    known.contains(&None) && known != [None; 2] && shrunk >= MOST_SHRUNK
 }
 
 /// What some cells span along each axis.
@@ -180,17 +239,17 @@ fn extents(space: &CellSpace, cells: &[usize]) -> Vec<(f64, f64)> {
     .collect()
 }
 
-/// Extents with a margin, and alike on both sides of a centre of symmetry.
-fn widened(
-    system: &dyn System,
-    visited: &[(f64, f64)],
-    known: &[Option<(f64, f64)>],
-) -> Vec<(f64, f64)> {
+/// Extents with a margin, and alike on both sides of a centre of symmetry. From an end that is known the margin is as
+/// wide as from the middle of a range.
+fn widened(system: &dyn System, visited: &[(f64, f64)], known: &[KnownEnds]) -> Vec<(f64, f64)> {
     let symmetry = &system.facts().symmetry;
     let axes = visited.iter().zip(known).enumerate();
     axes.map(|(axis, (&(from, to), known))| {
-        if let Some(known) = known {
-            return *known;
+        let wider = MARGIN * (to - from);
+        match *known {
+            [None, None] => {}
+            [Some(from), _] => return with_known((from, from + wider), *known),
+            [None, Some(to)] => return (to - wider, to),
         }
         let reflected = symmetry.as_ref().filter(|s| s.reflected[axis]);
         let (centre, half) = match reflected {
@@ -228,7 +287,7 @@ mod tests {
             let system = model.system_with(&given).unwrap();
             let deviation = (sigma2 / 0.1_f64).sqrt();
             let ranges =
-                automatic_ranges(&[system], &[None, None], 1, &Cancellation::new()).unwrap();
+                automatic_ranges(&[system], &[[None; 2]; 2], 1, &Cancellation::new()).unwrap();
             for (from, to) in ranges {
                 assert_eq!(from, -to, "alike on both sides of the centre");
                 assert!(
@@ -251,7 +310,7 @@ mod tests {
         };
         let ranges = |k: f64, noise: f64| {
             let systems = [coupled(0.1, noise), coupled(k, noise)];
-            automatic_ranges(&systems, &[None, None], 1, &Cancellation::new()).unwrap()
+            automatic_ranges(&systems, &[[None; 2]; 2], 1, &Cancellation::new()).unwrap()
         };
         let alike = ranges(0.5, 0.6);
         assert_eq!(alike[0], alike[1]);
@@ -260,11 +319,54 @@ mod tests {
     }
 
     #[test]
+    fn an_end_that_is_given_stays_and_the_other_is_found() {
+        // Growth with a rate that fluctuates: x^(a/D - 1) exp(-x/D) on one side of zero, a gamma density.
+        let (a, d) = (1.0, 0.3);
+        let growth = |sign: f64| {
+            let typed = TypedModel::new("growth", "Growth", ["x"])
+                .with_equation("x", format!("{a} x - {sign} x^2"))
+                .with_noise("x", [format!("sqrt(2 * {d}) x")]);
+            let typed = typed.with_interpretation(crate::system::Interpretation::Stratonovich);
+            typed.build().unwrap().system_with(&[]).unwrap()
+        };
+        let found = |sign: f64, known: KnownEnds| {
+            automatic_ranges(&[growth(sign)], &[known], 1, &Cancellation::new()).unwrap()[0]
+        };
+        let (from, to) = found(1.0, [Some(0.0), None]);
+        // Beyond to no more than a millionth of the mass, and no more than twice the place beyond which that is.
+        let beyond = |x: f64| 1.0 - statrs::function::gamma::gamma_lr(a / d, x / d);
+        assert!(
+            from == 0.0 && beyond(to) < 1e-6 && beyond(0.5 * to) > 1e-6,
+            "{to}"
+        );
+        assert_eq!(found(-1.0, [None, Some(0.0)]), (-to, 0.0));
+        // Without growth all ends at zero, which says nothing of the other end.
+        let dying = TypedModel::new("decay", "Decay", ["x"])
+            .with_equation("x", "-0.5 x - x^2")
+            .with_noise("x", ["0.3 x"])
+            .with_interpretation(crate::system::Interpretation::Ito);
+        let dying = dying.build().unwrap().system_with(&[]).unwrap();
+        let systems = [dying, growth(1.0)];
+        let both = automatic_ranges(&systems, &[[Some(0.0), None]], 1, &Cancellation::new());
+        assert_eq!(both.unwrap(), [(0.0, to.max(2.0))]);
+        // A wall does not keep what has no steady state beside it.
+        let alone = TypedModel::new("free", "Free", ["x"]).with_equation("x", "0.1 x");
+        let alone = alone.with_noise("x", ["0.5"]).build().unwrap();
+        let system = alone.system_with(&[]).unwrap();
+        let known = [[Some(0.0), None]];
+        let found = automatic_ranges(&[system], &known, 1, &Cancellation::new());
+        assert!(
+            matches!(found, Err(RangeError::RunsAway { .. })),
+            "{found:?}"
+        );
+    }
+
+    #[test]
     fn a_system_without_a_steady_state_has_no_range() {
         let model = registry::find("coulomb").unwrap();
         let given = [("kappa", -0.05), ("f_c", 0.0), ("sigma2", 0.01)];
         let system = model.system_with(&given).unwrap();
-        let found = automatic_ranges(&[system], &[None, None], 1, &Cancellation::new());
+        let found = automatic_ranges(&[system], &[[None; 2]; 2], 1, &Cancellation::new());
         assert!(
             matches!(found, Err(RangeError::RunsAway { system: 0, .. })),
             "{found:?}"
@@ -276,7 +378,7 @@ mod tests {
         let typed = typed.with_noise("x", ["0.5"]).with_noise("y", ["0.5"]);
         let model = typed.build().unwrap();
         let system = model.system_with(&[]).unwrap();
-        let found = automatic_ranges(&[system], &[None, None], 1, &Cancellation::new());
+        let found = automatic_ranges(&[system], &[[None; 2]; 2], 1, &Cancellation::new());
         assert!(
             matches!(found, Err(RangeError::RunsAway { axis: 1, .. })),
             "{found:?}"
@@ -293,7 +395,7 @@ mod tests {
         let typed = typed.with_equation("z", "0.01 z").with_noise("y", ["0.01"]);
         let model = typed.with_noise("z", ["0.5"]).build().unwrap();
         let system = model.system_with(&[]).unwrap();
-        let known = [Some((-9.0, 9.0)), Some((-9.0, 9.0)), None];
+        let known = [[Some(-9.0), Some(9.0)], [Some(-9.0), Some(9.0)], [None; 2]];
         let found = automatic_ranges(&[system], &known, 1, &Cancellation::new());
         let Err(RangeError::TooLong {
             axis, steps, last, ..

@@ -75,7 +75,7 @@ impl<'a> Reporter<'a> {
         }
     }
 
-    fn tell(&mut self, finding: Finding) {
+    pub(super) fn tell(&mut self, finding: Finding) {
         self.report.findings.push(finding);
     }
 

@@ -36,6 +36,14 @@ pub fn doubt_in_words(family: &Family, doubt: &Doubt) -> String {
                  would show the kink"
             )
         }
+        Doubt::NaturalEnd(axis, at, mass) => {
+            let axis = family.axis(*axis);
+            format!(
+                "{:.2} % of the mass lies in the cells beside {axis} = {at}, where the noise dies: narrow them toward it by \
+                 `cells.{axis}.grade`",
+                100.0 * mass
+            )
+        }
         Doubt::Leak(moves, wider) => {
             let wider = wider_in_words(wider);
             format!("what leaves Ω moves it by {moves:.1e}: {wider}")

@@ -90,6 +90,15 @@ fn cells_in_words(family: &Family, finding: &Finding) -> Option<String> {
             range[0],
             range[1],
         ),
+        Finding::NaturalEnd { axis, mass, at } => {
+            let axis = family.axis(axis);
+            format!(
+                "{:.2} % of the mass lies in the cells beside {axis} = {at}, where the noise dies and the density goes \
+                 like a power of the distance, which cells do not follow: narrow them toward it by \
+                 `cells.{axis}.grade`, or take its logarithm as the state",
+                100.0 * mass
+            )
+        }
         Finding::NegativeDensity { mass } => format!(
             "{:.2} % of the mass of a watched density is negative: it has wiggles that the cells do not resolve; use more cells",
             100.0 * mass

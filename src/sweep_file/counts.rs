@@ -94,7 +94,7 @@ impl Settings {
 
     /// Replaces gradings that are left to the program, where count and ranges are known.
     pub(super) fn find_gradings(&mut self, ends: &[Arc<dyn System>]) {
-        let ranges: Option<Vec<(f64, f64)>> = self.axes.iter().map(|axis| axis.range).collect();
+        let ranges: Option<Vec<(f64, f64)>> = self.axes.iter().map(AxisSettings::range).collect();
         let Some(ranges) = ranges else {
             return;
         };

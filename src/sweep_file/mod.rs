@@ -50,6 +50,7 @@ mod given;
 mod keys;
 mod memory;
 mod names;
+mod no_range;
 mod prepare;
 mod reader;
 mod report;

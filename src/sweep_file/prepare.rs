@@ -5,13 +5,12 @@ use std::sync::Arc;
 
 use super::diagnostic::Diagnostic;
 use super::report::Report;
-use super::settings::{Modes, Settings, at_cells, cell_space};
+use super::settings::{AxisSettings, Modes, Settings, at_cells, cell_space};
 use super::sweep::Sweep;
-use super::verify::short;
 use crate::cancellation::Cancellation;
 use crate::method::{
-    PILOT_BOX, Problem, RangeError, SgcmOptions, automatic_modes, automatic_ranges,
-    change_by_more_modes, check_sticking, highest_frequency,
+    KnownEnds, Problem, RangeError, SgcmOptions, automatic_modes, automatic_ranges,
+    change_by_more_modes, check_sticking, highest_frequency, pilot_box,
 };
 use crate::space::{Axis, CellSpace};
 use crate::system::{ParameterValues, System};
@@ -126,7 +125,7 @@ impl Settings {
         let ends: Vec<Arc<dyn System>> = corners.map(system).collect();
         let ranges = self.find_ranges(&ends, cancellation)?;
         for (axis, range) in self.axes.iter_mut().zip(ranges) {
-            axis.range = Some(range);
+            axis.ends = [range.0, range.1].map(Some);
         }
         Ok(ends)
     }
@@ -134,7 +133,7 @@ impl Settings {
     /// Refuses systems of which a part of the probability lies on a surface: known once there are ranges, and before
     /// anything is solved.
     fn check_density(&self) -> Result<(), Report> {
-        let ranges: Option<Vec<(f64, f64)>> = self.axes.iter().map(|axis| axis.range).collect();
+        let ranges: Option<Vec<(f64, f64)>> = self.axes.iter().map(AxisSettings::range).collect();
         let Some(ranges) = ranges else {
             return Ok(());
         };
@@ -176,15 +175,15 @@ impl Settings {
         ends: &[Arc<dyn System>],
         cancellation: &Cancellation,
     ) -> Result<Vec<(f64, f64)>, Report> {
-        let known: Vec<Option<(f64, f64)>> = self.axes.iter().map(|axis| axis.range).collect();
-        if let Some(given) = known.iter().copied().collect() {
+        if let Some(given) = self.axes.iter().map(AxisSettings::range).collect() {
             return Ok(given);
         }
+        let known: Vec<KnownEnds> = self.axes.iter().map(|axis| axis.ends).collect();
         let found = automatic_ranges(ends, &known, SgcmOptions::default().seed, cancellation);
         if let (Err(RangeError::RunsAway { .. } | RangeError::TooLong { .. }), Some(typed)) =
             (&found, self.family.model().typed())
         {
-            let start: Vec<(f64, f64)> = known.iter().map(|one| one.unwrap_or(PILOT_BOX)).collect();
+            let start: Vec<(f64, f64)> = known.iter().copied().map(pilot_box).collect();
             self.check_finite(
                 typed,
                 &start,
@@ -192,55 +191,6 @@ impl Settings {
             )?;
         }
         found.map_err(|error| self.refuse(self.no_range(&error)))
-    }
-
-    /// Why no ranges were found: along which axis, at which value, and what helps.
-    fn no_range(&self, error: &RangeError) -> Diagnostic {
-        let at = |system: &usize, axis: &usize| {
-            let (swept, axis) = (self.family.parameter(), self.family.axis(*axis));
-            let (model, corners) = (self.family.model(), self.corners());
-            let place = model.parameters.iter().position(|one| one.name == swept);
-            let value =
-                place.and_then(|place| corners.get(*system)?.as_slice().get(place).copied());
-            let value = value.map_or(String::new(), |value| {
-                format!(" at {swept} = {}", short(value))
-            });
-            let mut remedy = format!("give `cells.{axis}.from` and `to`");
-            if model.typed().is_some() {
-                remedy += &format!(
-                    "; where the equations themselves keep `{axis}` inside ends, name these in [system.bounds]"
-                );
-            }
-            (axis.to_owned(), value, remedy)
-        };
-        let found = |title: String, axis: &str, remedy: String| {
-            let found = Diagnostic::new(title).remedy(remedy);
-            match self.document.root.find(&["cells", axis]) {
-                Some(entry) => found.at(&entry.key_place, "its range is left to the program"),
-                None => at_cells(&self.document, found),
-            }
-        };
-        match error {
-            RangeError::RunsAway { system, axis } => {
-                let (axis, value, remedy) = at(system, axis);
-                found(format!("{error} range of `{axis}`{value}"), &axis, remedy)
-            }
-            RangeError::TooLong {
-                system, axis, last, ..
-            } => {
-                let (axis, value, remedy) = at(system, axis);
-                let (from, to) = (short(last.0), short(last.1));
-                let title =
-                    format!("{error}{value}: whether {from} to {to} holds `{axis}` was still open");
-                found(title, &axis, remedy)
-            }
-            RangeError::Cancelled(_) => Diagnostic::new(error.to_string()),
-            RangeError::Space(_) => {
-                let found = Diagnostic::new(error.to_string());
-                let remedy = "give `from` and `to` instead of `range = \"auto\"`";
-                at_cells(&self.document, found.remedy(remedy))
-            }
-        }
     }
 
     /// Replaces numbers of modes that are left to the program.

@@ -182,11 +182,23 @@ fn unknown_key(entry: &Entry, path: &[&str]) -> Diagnostic {
     if nearest_name(&entry.key, plain).is_some() {
         return diagnostic;
     }
-    // Perhaps the right key in the wrong table.
-    let elsewhere = KEYS
-        .iter()
-        .find(|key| key.parts().last() == Some(&entry.key));
-    let remedy = elsewhere.map(|key| format!("did you mean `{}`?", key.path()));
+    // Perhaps the right key in the wrong table: of the same axis, if it is one of an axis.
+    let place = parent.len().saturating_sub(1);
+    let mut here = KEYS.iter().filter(|key| key.starts_with(parent));
+    let holder = here.find_map(|key| key.parts().nth(place).filter(|part| part.starts_with('<')));
+    let named = || {
+        KEYS.iter()
+            .filter(|key| key.parts().last() == Some(&entry.key))
+    };
+    let of_same = |key: &&Key| holder.is_some_and(|holder| key.parts().any(|part| part == holder));
+    let elsewhere = named().find(of_same).or_else(|| named().next());
+    let remedy = elsewhere.map(|key| {
+        let path = match (holder, parent.last()) {
+            (Some(holder), Some(name)) => key.path().replace(holder, name),
+            _ => key.path().to_owned(),
+        };
+        format!("did you mean `{path}`?")
+    });
     diagnostic.advice(None, remedy)
 }
 

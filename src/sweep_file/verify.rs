@@ -4,7 +4,7 @@
 use super::diagnostic::Diagnostic;
 use super::document::Document;
 use super::report::Report;
-use super::settings::{Settings, at_cells, formula_place};
+use super::settings::{AxisSettings, Settings, at_cells, formula_place};
 use crate::system::contract::{self, ContractViolation, Quantity};
 use crate::system::{FormulaHazard, FormulaPlace, TypedEquations};
 
@@ -18,7 +18,7 @@ impl Settings {
         let Some(typed) = self.family.model().typed() else {
             return Ok(());
         };
-        let ranges: Option<Vec<(f64, f64)>> = self.axes.iter().map(|axis| axis.range).collect();
+        let ranges: Option<Vec<(f64, f64)>> = self.axes.iter().map(AxisSettings::range).collect();
         let Some(ranges) = ranges else {
             return Ok(());
         };

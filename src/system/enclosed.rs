@@ -23,7 +23,7 @@ impl Enclosed {
     }
 
     /// The system whose coordinates are reflected: axes with a lower and an upper wall, infinite where there is none.
-    pub(super) fn reflecting(system: Arc<dyn System>, walls: &BTreeMap<usize, (f64, f64)>) -> Self {
+    pub(crate) fn reflecting(system: Arc<dyn System>, walls: &BTreeMap<usize, (f64, f64)>) -> Self {
         let facts = Facts {
             reflecting: walls.clone(),
             ..system.facts().clone()

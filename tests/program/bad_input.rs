@@ -224,7 +224,6 @@ fn syntax_names_and_keys() {
         // Missing keys.
         ("kappa = 0.01\n", "", &["needs parameter `kappa`", "a.toml:4:9", "viscous damping"]),
         ("points = 3\n", "", &["missing key `sweep.points`", "a.toml:7:2"]),
-        (y, "y = { to = 5, count = 10 }", &["missing key `cells.y.from`", "a.toml:14:1"]),
         // What is swept is not given.
         (kappa, "kappa = 0.01\nf_c = 0.0", &["`f_c` is swept and also given", "a.toml:6:1", "remove it here"]),
     ] {

@@ -61,7 +61,7 @@ fn a_sweep_is_written_changed_and_read_again() {
     assert_eq!(file.get("sweep.points").as_deref(), Some("11"));
     assert_eq!(file.get("sweep.pionts"), None);
     let open = file.set("sweep.points", "21").validate().unwrap();
-    assert_eq!((open.points, open.axes[0].range), (21, None));
+    assert_eq!((open.points, open.axes[0].range()), (21, None));
     let sweep = open.prepare(&Cancellation::new()).unwrap();
     let mut again = SweepFile::parse("again", &sweep.to_toml());
     assert_eq!(again.get("title").as_deref(), Some("\"two wells\""));
@@ -71,7 +71,7 @@ fn a_sweep_is_written_changed_and_read_again() {
     assert_eq!(fixed.problem.space(), sweep.problem.space());
     // Settings can be changed in code as well, and written.
     let mut settings = again.set("title", "narrow").validate().unwrap();
-    settings.axes[0].range = Some((-1.0, 1.0));
+    settings.axes[0].ends = [-1.0, 1.0].map(Some);
     let text = settings.to_toml();
     assert!(text.contains("title = \"narrow\"") && text.contains("from = -1.0, to = 1.0"));
 }

@@ -263,7 +263,7 @@ fn ranges_and_gradings_are_found() {
     let sweep = settings.prepare(&Cancellation::new()).unwrap();
     for axis in &sweep.settings.axes {
         // At f_c = -0.02 the ring has radius 2.5 and noise around it: 5.5 holds all but 1e-5.
-        let (from, to) = axis.range.unwrap();
+        let (from, to) = axis.range().unwrap();
         assert!((5.5..9.0).contains(&to), "{to}");
         assert_eq!(from, -to);
     }

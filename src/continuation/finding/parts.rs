@@ -69,6 +69,7 @@ stored! {
     }
     along {
         Absorbed "absorbed" (at, exponent);
+        NaturalEnd "natural-end" (mass, at);
         WideCells "wide-cells" (peclet);
         BalanceBroken "balance-broken" (relative, error);
         UnresolvedSeries "unresolved-series" (change);

@@ -45,7 +45,12 @@ pub(crate) fn every_finding() -> Vec<Finding> {
             mass: 0.003,
             range: [-8.0, 8.0],
         }),
-        F::EdgeMass { .. } => Some(F::NegativeDensity { mass: 0.004 }),
+        F::EdgeMass { .. } => Some(F::NaturalEnd {
+            axis: 1,
+            mass: 0.02,
+            at: 0.0,
+        }),
+        F::NaturalEnd { .. } => Some(F::NegativeDensity { mass: 0.004 }),
         F::NegativeDensity { .. } => Some(F::NegativeCells {
             mass: 0.08,
             watched: 3e-8,

@@ -36,7 +36,7 @@ impl Base {
         let axes = settings.axes.iter().enumerate();
         let walled = |(index, axis): (usize, &crate::sweep_file::AxisSettings)| {
             let walls = walls(&settings.family, index);
-            walls.is_some() && walls == axis.range
+            walls.is_some() && walls == axis.range()
         };
         Self {
             walled: axes.map(walled).collect(),
@@ -165,8 +165,9 @@ impl Base {
     fn settings(&self, family: Family) -> Settings {
         let mut settings = self.sweep.settings.clone();
         for (index, axis) in settings.axes.iter_mut().enumerate() {
-            if self.walled.get(index) == Some(&true) {
-                axis.range = walls(&family, index).or(axis.range);
+            let is_walled = self.walled.get(index) == Some(&true);
+            if let Some((from, to)) = walls(&family, index).filter(|_| is_walled) {
+                axis.ends = [Some(from), Some(to)];
             }
         }
         settings.family = family;
@@ -196,7 +197,7 @@ fn key(settings: &Settings) -> Vec<u64> {
     let mut key = vec![moving.unwrap_or(usize::MAX) as u64];
     key.extend(family.fixed().map(|(_, value)| value.to_bits()));
     for axis in &settings.axes {
-        let (from, to) = axis.range.unwrap_or_default();
+        let (from, to) = axis.range().unwrap_or_default();
         key.extend([axis.count.unwrap_or(0) as u64, from.to_bits(), to.to_bits()]);
     }
     key

@@ -15,14 +15,14 @@ use super::source::{METHOD, SHARP};
 use super::trail::{self, Trail};
 use super::unknowns::{by_schemes, negative_mass, summed_over_modes, with_walls};
 use crate::continuation::measure::{ESCAPE_RATE, FACTORISATIONS, NEGATIVE_MASS};
-use crate::continuation::{Measure, Solution};
+use crate::continuation::{Finding, Measure, Solution};
 use crate::density::EstimatedDensity;
 use crate::generator::{cell_masses, resolution, summed_to_walls};
 use crate::method::forcing::Forced;
 use crate::method::measures::{Cells, Others};
 use crate::method::report::{QUIET_ESCAPE, Reporter};
 use crate::method::watched::planes;
-use crate::method::{MethodError, Problem};
+use crate::method::{MethodError, Problem, natural_ends};
 use crate::stationary::generator::RateInfo;
 
 /// Escape per unit time below which mass is said to stay in Ω, and relaxation is not looked at.
@@ -58,6 +58,13 @@ impl GeneratorSession {
         reporter.escaping(share);
         let masses = cell_masses(solved.system.as_ref(), space, unknowns);
         reporter.edge_mass(&masses, &self.source.closed_ends);
+        for finding in natural_ends::findings(space, &masses, &self.source.natural_ends) {
+            if matches!(finding, Finding::Absorbed { .. }) {
+                reporter.no_steady_state(finding);
+                return Ok((Solution::without_density(reporter.report), None));
+            }
+            reporter.tell(finding);
+        }
         for judged in resolution(solved.system.as_ref(), space, &masses) {
             reporter.resolution(&judged);
         }

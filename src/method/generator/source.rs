@@ -11,7 +11,7 @@ use crate::generator::{
     assemble_lines,
 };
 use crate::method::problem::Maps;
-use crate::method::structure::{all_kinked_surfaces, closed_ends, fixed_surfaces};
+use crate::method::structure::{all_kinked_surfaces, closed_ends, fixed_surfaces, natural_ends};
 use crate::method::watched::Masses;
 use crate::method::{MethodError, Problem, has_densities};
 use crate::space::CellSpace;
@@ -48,6 +48,8 @@ pub struct GeneratorSource {
     pub(super) problem: Problem,
     pub(super) options: GeneratorMethodOptions,
     pub(super) closed_ends: Vec<[bool; 2]>,
+    /// Ends of the axes of cells at which the noise dies somewhere along the path.
+    pub(super) natural_ends: Vec<[bool; 2]>,
     pub(super) kinked: Vec<SwitchingSurface>,
     /// Whether nothing leaves Ω, whatever the system does there.
     pub(super) enclosed: bool,
@@ -76,6 +78,7 @@ impl GeneratorSource {
             problem: problem.checked_by(GeneratorMethodOptions::cell_check(space)),
             options: options.clone(),
             closed_ends: closed_ends(&systems, space),
+            natural_ends: natural_ends(&systems, space),
             kinked: all_kinked_surfaces(&systems, space),
             enclosed: false,
             checks: false,

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::density::{Kink, Observable, Structure};
 use crate::space::CellSpace;
-use crate::system::{SwitchingSurface, System, proved_symmetry, symmetry_over_a_period};
+use crate::system::{self, SwitchingSurface, System, proved_symmetry, symmetry_over_a_period};
 use kink::kink;
 use smoothness::{Break, break_at};
 
@@ -101,17 +101,33 @@ pub(crate) fn wants_face(
 /// Whether the lower and upper end of each axis is a wall that the system cannot pass, all along the sweep, or belongs
 /// to a series.
 pub(super) fn closed_ends(systems: &[Arc<dyn System>], space: &CellSpace) -> Vec<[bool; 2]> {
+    let axes = space.axes().iter();
+    let ranges: Vec<(f64, f64)> = axes.map(|axis| (axis.from(), axis.to())).collect();
     let axes = space.axes().iter().enumerate();
     axes.map(|(axis, cells)| {
         if cells.is_modes() {
             return [true; 2];
         }
-        let range = (cells.from(), cells.to());
         let walls = systems
             .iter()
-            .map(|system| system.facts().walls(axis, range));
+            .map(|system| system::closed_ends(system.as_ref(), axis, &ranges));
         walls
             .reduce(|one, other| [one[0] && other[0], one[1] && other[1]])
+            .unwrap_or_default()
+    })
+    .collect()
+}
+
+/// Whether noise dies at the lower and upper end of each axis of cells, for one of the systems along the sweep.
+pub(super) fn natural_ends(systems: &[Arc<dyn System>], space: &CellSpace) -> Vec<[bool; 2]> {
+    let axes = space.axes().iter();
+    let ranges: Vec<(f64, f64)> = axes.map(|axis| (axis.from(), axis.to())).collect();
+    let axes = space.axes().iter().enumerate();
+    axes.map(|(axis, cells)| {
+        let systems = systems.iter().filter(|_| !cells.is_modes());
+        let natural = systems.map(|system| system::natural_ends(system.as_ref(), axis, &ranges));
+        natural
+            .reduce(|one, other| [one[0] || other[0], one[1] || other[1]])
             .unwrap_or_default()
     })
     .collect()

@@ -73,10 +73,10 @@ fn read_axis(
     if by_modes && reader.entry(&["cells", name]).is_none() {
         let bounds = along?.bounds(index);
         return Some(AxisSettings {
-            range: match series {
+            ends: both(match series {
                 ModesOf::Relaxing => bounds,
                 ModesOf::Bounded | ModesOf::Noise { .. } | ModesOf::Turn => Some(bounds?),
-            },
+            }),
             count: None,
             grade: Grade::Even,
             series,
@@ -86,7 +86,7 @@ fn read_axis(
     let Some(entry) = reader.entry(&["cells", name]) else {
         // Everything is left to the program.
         return Some(AxisSettings {
-            range: along.and_then(|along| along.bounds(index)),
+            ends: both(along.and_then(|along| along.bounds(index))),
             count: None,
             grade: match series {
                 ModesOf::Turn => Grade::Even,
@@ -108,22 +108,29 @@ fn read_axis(
     let modes = axis.modes.or((by_modes && unsaid).then_some(Modes::Auto));
     let grade = read_grade(reader, axis, name);
     let bounds = along.map(|along| along.bounds(index));
-    let range = match axis.range {
-        Some(_) => Some(bounds.flatten()),
+    let ends = match axis.range {
+        Some(_) => Some(both(bounds.flatten())),
         // What is wrong with it is reported already.
         None if reader.entry(&["cells", name, "range"]).is_some() => None,
-        None if bounds == Some(None) && !has_ends(reader, name) => Some(None),
-        None => read_range(reader, axis, name, bounds).map(Some),
+        None => read_ends(reader, axis, name, bounds),
+    };
+    let ends = ends?;
+    // An end by itself is often one at which noise dies: what is found for the other is found for the cells too.
+    let is_one_found = ends.iter().filter(|end| end.is_none()).count() == 1;
+    let is_unsaid = reader.entry(&["cells", name, "grade"]).is_none();
+    let grade = match is_one_found && is_unsaid {
+        true => Some(Grade::Auto),
+        false => grade,
     };
     let settings = AxisSettings {
-        range: range?,
+        ends,
         count: axis.count,
         grade: grade?,
         series,
         modes,
     };
     if modes.is_some() && method.takes_modes() {
-        check_modes(reader, name, along?, index, settings.range)?;
+        check_modes(reader, name, along?, index, settings.range())?;
     }
     match build_axis(reader.document(), name, &settings, method) {
         Ok(_) => {
@@ -138,35 +145,37 @@ fn read_axis(
     }
 }
 
-/// Whether an end of the range is given.
-fn has_ends(reader: &Reader<'_>, name: &str) -> bool {
-    let mut ends = ["from", "to"].into_iter();
-    ends.any(|end| reader.entry(&["cells", name, end]).is_some())
+/// Both ends of a range, or none.
+fn both(range: Option<(f64, f64)>) -> [Option<f64>; 2] {
+    [range.map(|range| range.0), range.map(|range| range.1)]
 }
 
-/// The range that is given; what is left out is the model's bound, where it knows one (`None`: there is no telling).
-fn read_range(
+/// The ends that are given; one that is left out is the model's bound, where it knows one, and is found else. `None` if
+/// something is wrong with them, or there is no telling what bounds the model knows.
+fn read_ends(
     reader: &mut Reader<'_>,
     axis: &AxisDraft,
     name: &str,
     bounds: Option<Option<(f64, f64)>>,
-) -> Option<(f64, f64)> {
-    let mut end = |key: &str, value: Option<f64>, bound: Option<f64>| {
-        let path = ["cells", name, key];
-        if reader.entry(&path).is_some() {
-            return value;
+) -> Option<[Option<f64>; 2]> {
+    let end = |key: &str, value: Option<f64>, bound: Option<f64>| {
+        let is_given = reader.entry(&["cells", name, key]).is_some();
+        if is_given {
+            value.map(Some)
+        } else {
+            bounds.map(|_| bound)
         }
-        if bounds == Some(None) {
-            reader.require(&path);
-        }
-        bound
     };
-    let known = bounds.flatten();
-    let from = end("from", axis.from, known.map(|bounds| bounds.0));
-    let to = end("to", axis.to, known.map(|bounds| bounds.1));
-    let (from, to) = (from?, to?);
+    let known = both(bounds.flatten());
+    let ends = [
+        end("from", axis.from, known[0])?,
+        end("to", axis.to, known[1])?,
+    ];
+    let [Some(from), Some(to)] = ends else {
+        return Some(ends);
+    };
     if from < to && (to - from).is_finite() {
-        return Some((from, to));
+        return Some(ends);
     }
     let what = match from < to {
         true => "longer than the largest number",

@@ -9,8 +9,8 @@ use crate::sweep_file::draft::{MethodKind, Modes};
 /// How one axis is cut into cells, or carried by modes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisSettings {
-    /// Lower and upper end; `None` where they are left to the program.
-    pub range: Option<(f64, f64)>,
+    /// Lower and upper end; `None` where one is left to the program.
+    pub ends: [Option<f64>; 2],
     /// Number of cells, at least 2; `None` where it is left to the program, and for an axis of modes alone.
     pub count: Option<usize>,
     /// Where the cells get narrower.
@@ -33,6 +33,11 @@ pub enum Grade {
 }
 
 impl AxisSettings {
+    /// Lower and upper end; `None` where one of them is left to the program.
+    pub fn range(&self) -> Option<(f64, f64)> {
+        self.ends[0].zip(self.ends[1])
+    }
+
     /// The number of modes that a method uses; `None` where it uses cells.
     pub fn modes_by(&self, method: MethodKind) -> Option<Modes> {
         self.modes.filter(|_| method.takes_modes())
@@ -46,7 +51,7 @@ impl AxisSettings {
 
     /// The axis as a method uses it; `None` where something is left to the program.
     pub(super) fn axis(&self, method: MethodKind) -> Option<Result<Axis, SpaceError>> {
-        let (from, to) = self.range?;
+        let (from, to) = self.range()?;
         match self.modes_by(method) {
             Some(Modes::Auto) => return None,
             Some(Modes::Number(count)) => return Some(self.series.axis((from, to), count)),

@@ -281,9 +281,9 @@ fn axis_draft(name: &str, axis: &AxisSettings) -> AxisDraft {
     };
     AxisDraft {
         name: name.to_owned(),
-        range: axis.range.is_none().then_some(Auto),
-        from: axis.range.map(|range| range.0),
-        to: axis.range.map(|range| range.1),
+        range: (axis.ends == [None; 2]).then_some(Auto),
+        from: axis.ends[0],
+        to: axis.ends[1],
         count: axis.count,
         modes: axis.modes,
         grade: (axis.grade == Grade::Auto).then_some(Auto),

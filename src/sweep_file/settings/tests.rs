@@ -104,7 +104,7 @@ fn even_phases_are_watched_together() {
 fn what_closes_on_itself_is_an_angle_of_harmonics() {
     let read = |sets: &[&str]| parse(ANGLE, sets);
     let spec = read(&[]).unwrap();
-    assert_eq!(spec.axes[0].range, Some((-0.5, 0.5)));
+    assert_eq!(spec.axes[0].range(), Some((-0.5, 0.5)));
     assert_eq!(spec.axes[0].series, ModesOf::Turn);
     assert_eq!(spec.observables, [crate::density::Observable::Marginal(0)]);
     let names: Vec<&str> = spec.family.averages().collect();
@@ -125,7 +125,7 @@ fn what_closes_on_itself_is_an_angle_of_harmonics() {
     let radians = text.replace("2 pi phi", "phi");
     let spec = parse(&radians, &[]).unwrap();
     let pi = std::f64::consts::PI;
-    assert_eq!(spec.axes[0].range, Some((-pi, pi)));
+    assert_eq!(spec.axes[0].range(), Some((-pi, pi)));
     assert!(spec.to_toml().contains("phi = \"periodic\""));
     let other = |word: &str, by: &str| radians.replace(word, by);
     #[rustfmt::skip]
@@ -282,13 +282,52 @@ fn figures_of_the_file_outside_a_sweep_that_was_set_are_left_out() {
 }
 
 #[test]
+fn one_end_of_a_range_may_be_given_alone() {
+    let file = FILE.split("[cells]").next().unwrap_or_default();
+    let settings = parse(file, &["cells.x={from=-3}", "cells.y={to=5, count=20}"]).unwrap();
+    let ends: Vec<[Option<f64>; 2]> = settings.axes.iter().map(|axis| axis.ends).collect();
+    assert_eq!(ends, [[Some(-3.0), None], [None, Some(5.0)]]);
+    let text = settings.to_toml();
+    assert_eq!(parse(&text, &[]).unwrap().axes, settings.axes, "{text}");
+    let range = |axis: usize| -> (f64, f64) {
+        let prepared = settings.clone().prepare(&Cancellation::new()).unwrap();
+        prepared.settings.axes[axis].range().unwrap()
+    };
+    assert!(range(0).0 == -3.0 && range(0).1 > 2.0, "{:?}", range(0));
+    assert!(range(1).1 == 5.0 && range(1).0 < -2.0, "{:?}", range(1));
+}
+
+#[test]
+fn a_key_in_the_table_of_another_is_shown_its_own() {
+    let report = parse(FILE, &["system.bounds.x={from=0}"])
+        .unwrap_err()
+        .to_string();
+    assert!(report.contains("did you mean `cells.x.from`?"), "{report}");
+}
+
+#[test]
+fn where_noise_dies_at_zero_the_remedy_of_a_range_names_that_end() {
+    let text = "[system.equations]\nx = \"a x - x^2\"\n[system.noise]\ninterpretation = \"ito\"\nx = \"0.3 x\"\n\
+                [system.parameters]\na = 1\n[sweep]\nparameter = \"a\"\nfrom = 0.5\nto = 1\npoints = 3\n";
+    let settings = parse(text, &[]).unwrap();
+    let report = settings
+        .prepare(&Cancellation::new())
+        .unwrap_err()
+        .to_string();
+    assert!(
+        report.contains("give `cells.x.from = 0`, or `to = 0`"),
+        "{report}"
+    );
+}
+
+#[test]
 fn what_is_left_to_the_program_stays_open_and_is_written_so() {
     let open = ["cells.x={range=auto, count=20}", "cells.y.grade=auto"];
     // Inside a table a word needs its quotation marks.
     let open = [open[0].replace("auto", "\"auto\""), open[1].to_owned()];
     let open: Vec<&str> = open.iter().map(String::as_str).collect();
     let settings = parse(FILE, &open).unwrap();
-    assert_eq!(settings.axes[0].range, None);
+    assert_eq!(settings.axes[0].range(), None);
     assert_eq!(settings.axes[1].grade, Grade::Auto);
     let text = settings.to_toml();
     assert!(
@@ -299,7 +338,13 @@ fn what_is_left_to_the_program_stays_open_and_is_written_so() {
     let said = settings.clone().fixed().unwrap_err().to_string();
     assert!(said.contains("axis `x` is left to the program"), "{said}");
     let sweep = settings.prepare(&Cancellation::new()).unwrap();
-    assert!(sweep.settings.axes.iter().all(|axis| axis.range.is_some()));
+    assert!(
+        sweep
+            .settings
+            .axes
+            .iter()
+            .all(|axis| axis.range().is_some())
+    );
     assert!(matches!(sweep.settings.axes[1].grade, Grade::Toward(_)));
     let again = parse(&sweep.to_toml(), &[]).unwrap().fixed().unwrap();
     assert_eq!(again.problem.space(), sweep.problem.space());

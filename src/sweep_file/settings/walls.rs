@@ -24,20 +24,17 @@ pub(super) fn read(
             refuse(reader, name, found);
             continue;
         };
-        if let Some(found) = fault(draft, &family, (axis, name), ends, axes[axis].range) {
+        if let Some(found) = fault(draft, &family, (axis, name), ends, axes[axis].ends) {
             refuse(reader, name, found);
             continue;
         }
-        let [lower, upper] = ends.map(|end| end == EndKind::Reflecting);
-        let Some((from, to)) = axes[axis].range.filter(|_| lower || upper) else {
-            continue;
-        };
-        let wall = |is_wall: bool, at: f64, none: f64| if is_wall { at } else { none };
-        let (from, to) = (
-            wall(lower, from, f64::NEG_INFINITY),
-            wall(upper, to, f64::INFINITY),
-        );
-        walls.push((axis, (from, to)));
+        let wall = |end: usize| axes[axis].ends[end].filter(|_| ends[end] == EndKind::Reflecting);
+        let (lower, upper) = (wall(0), wall(1));
+        if lower.is_some() || upper.is_some() {
+            let from = lower.unwrap_or(f64::NEG_INFINITY);
+            let to = upper.unwrap_or(f64::INFINITY);
+            walls.push((axis, (from, to)));
+        }
     }
     family.with_walls(walls)
 }
@@ -48,7 +45,7 @@ fn fault(
     family: &Family,
     (axis, name): (usize, &str),
     ends: &[EndKind; 2],
-    range: Option<(f64, f64)>,
+    places: [Option<f64>; 2],
 ) -> Option<Diagnostic> {
     if ends.contains(&EndKind::Absorbing) {
         let title = format!(
@@ -71,10 +68,12 @@ fn fault(
              noise, or let a stiff force keep the state inside",
         ));
     }
-    if range.is_none() {
+    let unsaid = |end: usize| ends[end] == EndKind::Reflecting && places[end].is_none();
+    if let Some(end) = (0..2).find(|&end| unsaid(end)) {
         let title =
             format!("the wall of `{name}` stands where its cells end, and that is not said");
-        return Some(Diagnostic::new(title).remedy(format!("give `cells.{name}.from` and `to`")));
+        let key = ["from", "to"][end];
+        return Some(Diagnostic::new(title).remedy(format!("give `cells.{name}.{key}`")));
     }
     if draft.method.kind == MethodKind::Sgcm {
         let title = format!("`sgcm` knows no walls that reflect, as `{name}` has one");

@@ -140,10 +140,13 @@ fn what_is_located_where_noise_differs_from_place_to_place_holds_the_truth() {
     print_true(&scores);
 }
 
-/// Two grids agree by chance on this oscillator's fold, within less than half of what they are off.
+/// Two grids agree by chance on this oscillator's fold, within less than half of what they are off; and on that of the
+/// other system, forty-seven times better than schemes do on the coarser one.
 #[test]
 fn what_two_grids_agree_on_by_chance_is_not_located() {
-    print_true(&run(cases(oscillator, 1_689_121..1_689_122)));
+    let mut scores = run(cases(oscillator, 1_689_121..1_689_122));
+    scores.extend(run(cases(hills, 6_309_203..6_309_204)));
+    print_true(&scores);
 }
 
 #[test]

@@ -60,7 +60,7 @@ fn coloured_noise_adds_an_axis_and_a_parameter_and_is_written_down_again() {
     let sets = [&COLOURED[..], &["cells.z.modes=4", "cells.noise.modes=3"]].concat();
     let spec = parse(DAHL, &sets).unwrap();
     assert_eq!(spec.observables.len(), 3);
-    assert_eq!(spec.axes[3].range, Some((-6.0, 6.0)));
+    assert_eq!(spec.axes[3].range(), Some((-6.0, 6.0)));
     let sweep = spec.prepare(&Cancellation::new()).unwrap();
     assert_eq!(sweep.problem.space().shape(), [12, 12, 4, 3]);
     let again = SweepFile::parse("a.toml", &sweep.to_toml())

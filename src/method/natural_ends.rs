@@ -1,0 +1,102 @@
+//! Ends at which the noise along an axis dies, of systems with several axes: how much mass lies in the cells beside
+//! them, and whether all of it ends there.
+
+use crate::continuation::Finding;
+use crate::space::CellSpace;
+
+/// Mass in the cells beside an end that is worth a finding.
+const LIMIT: f64 = 1e-3;
+
+/// Cells from whose densities the power is read, by their number from the end: in the outermost ones it is what the end
+/// of the grid makes of it.
+const READ: [usize; 2] = [2, 6];
+
+/// What is said of the ends at which noise dies; `masses` are those of all cells.
+pub(super) fn findings(space: &CellSpace, masses: &[f64], natural: &[[bool; 2]]) -> Vec<Finding> {
+    let mut found = Vec::new();
+    for (axis, ends) in natural.iter().enumerate() {
+        let cells = &space.axes()[axis];
+        if *ends == [false; 2] || cells.count() <= READ[1] {
+            continue;
+        }
+        let mut along: Vec<f64> = vec![0.0; cells.count()];
+        for (&mass, position) in masses.iter().zip(space.positions(axis)) {
+            along[position] += mass;
+        }
+        for (end, at) in [cells.from(), cells.to()].into_iter().enumerate() {
+            let from_end = |number: usize| match end {
+                0 => number,
+                _ => cells.count() - 1 - number,
+            };
+            let mass = along[from_end(0)];
+            if !ends[end] || mass <= LIMIT {
+                continue;
+            }
+            let place = |number: usize| {
+                let cell = from_end(number);
+                let distance = (cells.centre(cell) - at).abs();
+                (distance.ln(), (along[cell] / cells.width(cell)).ln())
+            };
+            let [near, far] = READ.map(place);
+            let exponent = (far.1 - near.1) / (far.0 - near.0);
+            found.push(if exponent <= -1.0 {
+                Finding::Absorbed { axis, at, exponent }
+            } else {
+                Finding::NaturalEnd { axis, mass, at }
+            });
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::{Axis, Grading};
+
+    /// What is said of p ~ x^ν on (0, 1), over cells that narrow toward zero, beside a uniform axis.
+    fn told(power: f64, is_mirrored: bool) -> Vec<Finding> {
+        let grading = Grading {
+            at: vec![f64::from(is_mirrored)],
+            smallest: 1e-4,
+        };
+        let axis = Axis::graded(0.0, 1.0, 60, &grading).unwrap();
+        let other = Axis::uniform(0.0, 1.0, 2).unwrap();
+        let space = CellSpace::new(vec![axis.clone(), other]).unwrap();
+        let distance = |x: f64| if is_mirrored { 1.0 - x } else { x };
+        let along = (0..60).map(|cell| axis.width(cell) * distance(axis.centre(cell)).powf(power));
+        let along: Vec<f64> = along.collect();
+        let total: f64 = along.iter().sum();
+        let masses: Vec<f64> = along
+            .iter()
+            .flat_map(|mass| [0.5 * mass / total; 2])
+            .collect();
+        let end = usize::from(is_mirrored);
+        let natural = [[end == 0, end == 1], [false; 2]];
+        findings(&space, &masses, &natural)
+    }
+
+    #[test]
+    fn the_power_of_the_distance_tells_whether_all_mass_ends_there() {
+        assert_eq!(told(1.0, false), []);
+        for is_mirrored in [false, true] {
+            let end = f64::from(is_mirrored);
+            let found = told(-0.9, is_mirrored);
+            assert!(
+                matches!(found[..], [Finding::NaturalEnd { axis: 0, at, .. }] if at == end),
+                "{found:?}"
+            );
+            let [
+                Finding::Absorbed {
+                    axis: 0,
+                    at,
+                    exponent,
+                },
+            ] = told(-1.2, is_mirrored)[..]
+            else {
+                panic!("not absorbed");
+            };
+            assert!(at == end && (exponent + 1.2).abs() < 1e-9, "{exponent}");
+        }
+    }
+}

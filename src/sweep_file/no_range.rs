@@ -1,0 +1,93 @@
+//! What is said where free trajectories found no range: along which axis, at which value, and what helps.
+
+use super::diagnostic::Diagnostic;
+use super::settings::{Settings, at_cells};
+use super::verify::short;
+use crate::method::RangeError;
+use crate::system::System;
+
+impl Settings {
+    /// Why no ranges were found: along which axis, at which value, and what helps.
+    pub(super) fn no_range(&self, error: &RangeError) -> Diagnostic {
+        let at = |system: &usize, axis: &usize| {
+            let swept = self.family.parameter();
+            let (model, corners) = (self.family.model(), self.corners());
+            let place = model.parameters.iter().position(|one| one.name == swept);
+            let value =
+                place.and_then(|place| corners.get(*system)?.as_slice().get(place).copied());
+            let value = value.map_or(String::new(), |value| {
+                format!(" at {swept} = {}", short(value))
+            });
+            let remedy = self.remedy_of_range(axis, *system);
+            (self.family.axis(*axis).to_owned(), value, remedy)
+        };
+        let found = |title: String, axis: &str, remedy: String| {
+            let found = Diagnostic::new(title).remedy(remedy);
+            match self.document.root.find(&["cells", axis]) {
+                Some(entry) => found.at(&entry.key_place, "its range is left to the program"),
+                None => at_cells(&self.document, found),
+            }
+        };
+        match error {
+            RangeError::RunsAway { system, axis } => {
+                let (axis, value, remedy) = at(system, axis);
+                found(format!("{error} range of `{axis}`{value}"), &axis, remedy)
+            }
+            RangeError::TooLong {
+                system, axis, last, ..
+            } => {
+                let (axis, value, remedy) = at(system, axis);
+                let (from, to) = (short(last.0), short(last.1));
+                let title =
+                    format!("{error}{value}: whether {from} to {to} holds `{axis}` was still open");
+                found(title, &axis, remedy)
+            }
+            RangeError::Cancelled(_) => Diagnostic::new(error.to_string()),
+            RangeError::Space(_) => {
+                let found = Diagnostic::new(error.to_string());
+                let remedy = "give `from` and `to` instead of `range = \"auto\"`";
+                at_cells(&self.document, found.remedy(remedy))
+            }
+        }
+    }
+
+    /// What helps where no range of an axis was found at a corner.
+    fn remedy_of_range(&self, axis: &usize, corner: usize) -> String {
+        let (name, model) = (self.family.axis(*axis), self.family.model());
+        let system = self
+            .corners()
+            .get(corner)
+            .map(|values| model.system(values));
+        let ends = self.axes[*axis].ends;
+        if ends == [None; 2] && system.is_some_and(|system| stands_still_at_zero(&*system, *axis)) {
+            return format!(
+                "no path crosses {name} = 0, where its drift and noise vanish: give `cells.{name}.from = 0`, or `to = 0`, \
+                 and the other end is found for that side"
+            );
+        }
+        let open = match ends {
+            [Some(_), None] => "`to`".to_owned(),
+            [None, Some(_)] => "`from`".to_owned(),
+            _ => format!("`cells.{name}.from` and `to`"),
+        };
+        let bounds = match model.typed() {
+            Some(_) => format!(
+                "; where the equations themselves keep `{name}` inside ends, name these in [system.bounds]"
+            ),
+            None => String::new(),
+        };
+        format!("give {open}{bounds}")
+    }
+}
+
+/// Whether neither drift nor noise moves a coordinate at zero, wherever the others are, as that of a population.
+fn stands_still_at_zero(system: &dyn System, axis: usize) -> bool {
+    let mut tried = [-0.7, 0.3, 1.1].into_iter().map(|other| {
+        let mut state = vec![other; system.dimension()];
+        state[axis] = 0.0;
+        let noises = system.noises().iter().filter(|noise| noise.axis == axis);
+        let mut amplitudes = noises.map(|noise| noise.at(0.0, &state));
+        system.drift_at(0.0, &state)[axis] == 0.0 && amplitudes.all(|amplitude| amplitude == 0.0)
+    });
+    tried.all(|still| still)
+}

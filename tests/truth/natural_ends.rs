@@ -1,0 +1,157 @@
+//! Ends at which noise dies, on more than one axis: populations that cannot be negative, whose marginals are known.
+
+use pbif::cancellation::Cancellation;
+use pbif::continuation::{DensitySource, Finding, Measure, PointStatus, Solution};
+use pbif::method::{GeneratorMethodOptions, GeneratorSource};
+use pbif::sweep_file::{Sweep, SweepFile};
+
+use crate::common::room::Room;
+
+/// Growth with a rate that fluctuates, beside a state that relaxes: x has the gamma density x^(a/D - 1) exp(-x/D),
+/// whose mean is a and whose variance is a D. The lower end alone is given.
+const GROWTH: &str = r#"
+[system.equations]
+x = "a x - x^2"
+y = "-y + 0.3 x"
+[system.noise]
+interpretation = "stratonovich"
+x = "sqrt(2 D) x"
+y = "0.5"
+[system.parameters]
+a = 1.0
+D = 0.3
+[sweep]
+parameter = "a"
+from = -0.1
+to = 1.3
+points = 13
+[cells]
+x = { from = 0, count = 100 }
+y = { count = 50 }
+[detect]
+marginals = ["x"]
+joint = []
+"#;
+
+fn sweep() -> Sweep {
+    let file = SweepFile::parse("growth.toml", GROWTH);
+    let settings = file.validate().unwrap_or_else(|report| panic!("{report}"));
+    let prepared = settings.prepare(&Cancellation::new());
+    prepared.unwrap_or_else(|report| panic!("{report}"))
+}
+
+/// A number and its error.
+fn number(solution: &Solution<'_>, name: &str) -> (f64, f64) {
+    let of_name = |one: &&Measure| one.name == name;
+    let found = solution.report.measures.iter().find(of_name).unwrap();
+    (found.value, found.error.unwrap())
+}
+
+fn is_natural_end(finding: &Finding) -> bool {
+    matches!(finding, Finding::NaturalEnd { axis: 0, at, .. } if *at == 0.0)
+}
+
+#[test]
+fn nothing_leaves_where_noise_dies_and_means_are_those_of_the_gamma_density() {
+    let sweep = sweep();
+    let axis = &sweep.problem.space().axes()[0];
+    // Narrower cells beside the end follow a density that goes like a power of the distance.
+    assert!(axis.from() == 0.0 && axis.width(0) < 0.1 * axis.width(50));
+    let source = GeneratorSource::new(&sweep.problem, &GeneratorMethodOptions::default()).unwrap();
+    let mut session = source.open(&Cancellation::new());
+    for a in [0.4, 0.7, 1.0, 1.3] {
+        let solution = session.solve(a).unwrap();
+        let findings = &solution.report.findings;
+        assert!(findings.is_empty(), "{findings:?}");
+        // What leaves does so through the upper end, where e^{-x/D} is small.
+        let escape = solution.report.measure("escape_rate").unwrap();
+        assert!(escape < 2e-6, "a = {a}: {escape}");
+        for (name, exact) in [("mean_x", a), ("sd_x", (0.3 * a).sqrt())] {
+            let (value, error) = number(&solution, name);
+            println!("a = {a}: {name} {value} ± {error:.1e}, exactly {exact}");
+            let off = (value - exact).abs();
+            assert!(off <= 1e-4 && error <= 1e-3, "{name} {value} ± {error}");
+        }
+    }
+    // With the power -2/3 a tenth of the mass lies in the last cell, and that is told.
+    let findings = session.solve(0.1).unwrap().report.findings;
+    assert!(findings.iter().any(is_natural_end), "{findings:?}");
+    // A rate of growth below zero ends in extinction, by the power -4/3.
+    let report = session.solve(-0.1).unwrap().report;
+    assert_eq!(report.status, PointStatus::NoSteadyState);
+    let [
+        Finding::Absorbed {
+            axis: 0,
+            at,
+            exponent,
+        },
+    ] = report.findings[..]
+    else {
+        panic!("{:?}", report.findings);
+    };
+    assert!(
+        at == 0.0 && (exponent + 4.0 / 3.0).abs() < 0.1,
+        "{exponent}"
+    );
+}
+
+/// b at which the slope of the density of a tumour is zero at x: 1 - x/10 - s²/2 = b x/(1 + x²).
+fn intensity(x: f64) -> f64 {
+    (1.0 - 0.045 - 0.1 * x) * (1.0 + x * x) / x
+}
+
+/// The place between two others where that turns.
+fn turn(mut low: f64, mut high: f64) -> f64 {
+    let slope = |x: f64| (intensity(x + 1e-6) - intensity(x - 1e-6)) / 2e-6;
+    let rises = slope(low) > 0.0;
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if (slope(middle) > 0.0) == rises {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+#[test]
+fn folds_of_a_population_are_located_where_its_equation_has_them() {
+    let room = Room::new();
+    let text = r#"
+        [system.equations]
+        x = "x (1 - x/10) - b x^2/(1 + x^2)"
+        y = "-y + 0.1 x"
+        [system.noise]
+        interpretation = "stratonovich"
+        x = "0.3 x"
+        y = "0.3"
+        [system.parameters]
+        b = 2.0
+        [sweep]
+        parameter = "b"
+        from = 1.5
+        to = 2.6
+        points = 12
+        [cells]
+        x = { from = 0, count = 120 }
+        y = { count = 50 }
+        [detect]
+        marginals = ["x"]
+        joint = []
+    "#;
+    room.write("tumour.toml", text);
+    room.solved("sweep tumour.toml --out run --quiet figures.draw=[]");
+    let mut rows = room.table("run/bifurcations.csv").0;
+    rows.retain(|row| row["label"].starts_with("PB"));
+    let folds = [turn(2.0, 6.0), turn(0.8, 2.0)].map(intensity);
+    assert_eq!(rows.len(), 2, "{rows:?}");
+    let mut exact = folds.to_vec();
+    exact.sort_by(f64::total_cmp);
+    for (row, exact) in rows.iter().zip(exact) {
+        let (value, error) = (row.number("value"), row.number("error"));
+        println!("{value} ± {error:.1e}, exactly {exact}");
+        assert_eq!(&row["status"], "located");
+        assert!((value - exact).abs() <= error, "{value} ± {error}: {exact}");
+    }
+}
