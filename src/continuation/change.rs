@@ -188,7 +188,8 @@ fn decisive(
 
 /// What follows an event where counts follow from the equations: what was followed first, if the count changes with it,
 /// or the inflection beside the kink. A pair exists as long as the density rises anywhere between its peak and its
-/// valley, at the kink or beside it: where the count changes with both, the one that keeps the pair longer decides.
+/// valley, at the kink or beside it: where the count changes with both between the same two points, the one that keeps
+/// the pair longer decides. (Farther apart they belong to two pairs.)
 fn where_count_changes(
     points: &[&Point],
     detector: &dyn Detector,
@@ -207,7 +208,9 @@ fn where_count_changes(
     };
     let second = follow(points, detector, observable, gap, &other);
     match (is_held, holds(&second), first, second) {
-        (true, true, Some(Course::Crossing(kink)), Some(Course::Crossing(inflection))) => {
+        (true, true, Some(Course::Crossing(kink)), Some(Course::Crossing(inflection)))
+            if kink.left == inflection.left =>
+        {
             let at = |one: &Crossing| root(points, one, detector.confidence()).value;
             let is_longer = (at(&inflection) < at(&kink)) == event.above;
             Some(Course::Crossing(if is_longer { inflection } else { kink }))
