@@ -17,16 +17,17 @@ pub(crate) fn closed_ends(system: &dyn System, axis: usize, ranges: &[(f64, f64)
     [0, 1].map(|end| walls[end] || natural[end])
 }
 
-/// Whether the lower and the upper end of an axis with noise are natural ones and no walls: there the noise along the
-/// axis dies and drift does not lead out, as at zero of a population.
+/// Whether the lower and the upper end of an axis with noise are natural ones: there the noise along the axis dies and
+/// drift does not lead out, as at zero of a population.
 pub(crate) fn natural_ends(system: &dyn System, axis: usize, ranges: &[(f64, f64)]) -> [bool; 2] {
     let (from, to) = ranges[axis];
-    let walls = system.facts().walls(axis, (from, to));
-    if !system.is_noisy(axis) || system.facts().period.is_some() {
+    let facts = system.facts();
+    // The ends of a turn are one place.
+    let is_closed = facts.turns.contains_key(&axis);
+    if !system.is_noisy(axis) || is_closed || facts.period.is_some() {
         return [false; 2];
     }
-    let sides = [(from, -1.0), (to, 1.0)];
-    [0, 1].map(|end| !walls[end] && is_natural(system, axis, ranges, sides[end]))
+    [(from, -1.0), (to, 1.0)].map(|side| is_natural(system, axis, ranges, side))
 }
 
 /// Whether noise dies at an end, and drift does not lead out, wherever the other coordinates are.
