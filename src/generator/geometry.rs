@@ -69,9 +69,7 @@ impl AxisGeometry {
             false => breaks(system, index, space),
         };
         let end = |wall: bool| if wall { End::Wall } else { End::Open };
-        let ranges: Vec<(f64, f64)> = (space.axes().iter())
-            .map(|axis| (axis.from(), axis.to()))
-            .collect();
+        let ranges = space.ranges();
         Self {
             nodes: axis.nodes().to_vec(),
             widths: (0..count).map(|cell| axis.node_stretch(cell)).collect(),

@@ -64,8 +64,7 @@ fn judge(system: &dyn System, space: &CellSpace, masses: &[f64], index: usize) -
     let lightest = WEIGHT * densities.iter().copied().fold(0.0, f64::max);
     let counts = |cell: usize| densities[cell] > lightest;
     let stride: usize = space.shape()[index + 1..].iter().product();
-    let axes = space.axes().iter();
-    let ranges: Vec<(f64, f64)> = axes.map(|axis| (axis.from(), axis.to())).collect();
+    let ranges = space.ranges();
     let mut seen = LineSurvey {
         system,
         space,

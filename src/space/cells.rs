@@ -50,6 +50,12 @@ impl CellSpace {
         &self.axes
     }
 
+    /// Lower and upper end of every axis, in their order and units.
+    pub(crate) fn ranges(&self) -> Vec<(f64, f64)> {
+        let axes = self.axes.iter();
+        axes.map(|axis| (axis.from(), axis.to())).collect()
+    }
+
     /// Number of cells, the sink not counted.
     pub fn n_cells(&self) -> usize {
         self.n_cells

@@ -35,9 +35,7 @@ impl Grid {
             .map(|axis| fewer(axis, factor))
             .collect();
         let space = CellSpace::new(axes?)?;
-        let axes = space.axes().iter();
-        let ranges: Vec<(f64, f64)> = axes.map(|axis| (axis.from(), axis.to())).collect();
-        let enclosed = Enclosed::new(Arc::clone(system), &ranges);
+        let enclosed = Enclosed::new(Arc::clone(system), &space.ranges());
         let assemble = |dissipation| assemble_damped(&enclosed, &space, options, dissipation);
         let (full, half) = rayon::join(
             || assemble(Dissipation::Full),

@@ -3,8 +3,8 @@
 use super::diagnostic::Diagnostic;
 use super::settings::{Settings, at_cells};
 use super::verify::short;
-use crate::method::RangeError;
-use crate::system::System;
+use crate::method::{RangeError, pilot_box};
+use crate::system::{System, natural_ends};
 
 impl Settings {
     /// Why no ranges were found: along which axis, at which value, and what helps.
@@ -80,14 +80,12 @@ impl Settings {
     }
 }
 
-/// Whether neither drift nor noise moves a coordinate at zero, wherever the others are, as that of a population.
+/// Whether no path crosses zero of an axis, as that of a population: it is a natural end of either side.
 fn stands_still_at_zero(system: &dyn System, axis: usize) -> bool {
-    let mut tried = [-0.7, 0.3, 1.1].into_iter().map(|other| {
-        let mut state = vec![other; system.dimension()];
-        state[axis] = 0.0;
-        let noises = system.noises().iter().filter(|noise| noise.axis == axis);
-        let mut amplitudes = noises.map(|noise| noise.at(0.0, &state));
-        system.drift_at(0.0, &state)[axis] == 0.0 && amplitudes.all(|amplitude| amplitude == 0.0)
-    });
-    tried.all(|still| still)
+    let mut ranges = vec![pilot_box([None; 2]); system.dimension()];
+    let (low, high) = ranges[axis];
+    ranges[axis] = (0.0, high);
+    let above = natural_ends(system, axis, &ranges)[0];
+    ranges[axis] = (low, 0.0);
+    above && natural_ends(system, axis, &ranges)[1]
 }

@@ -95,8 +95,7 @@ impl GeneratorSource {
         if !self.enclosed {
             return Ok(system);
         }
-        let axes = self.problem.space().axes().iter();
-        let ranges: Vec<(f64, f64)> = axes.map(|axis| (axis.from(), axis.to())).collect();
+        let ranges = self.problem.space().ranges();
         Ok(Arc::new(Enclosed::new(system, &ranges)))
     }
 

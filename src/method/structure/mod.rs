@@ -101,8 +101,7 @@ pub(crate) fn wants_face(
 /// Whether the lower and upper end of each axis is a wall that the system cannot pass, all along the sweep, or belongs
 /// to a series.
 pub(super) fn closed_ends(systems: &[Arc<dyn System>], space: &CellSpace) -> Vec<[bool; 2]> {
-    let axes = space.axes().iter();
-    let ranges: Vec<(f64, f64)> = axes.map(|axis| (axis.from(), axis.to())).collect();
+    let ranges = space.ranges();
     let axes = space.axes().iter().enumerate();
     axes.map(|(axis, cells)| {
         if cells.is_modes() {
@@ -120,8 +119,7 @@ pub(super) fn closed_ends(systems: &[Arc<dyn System>], space: &CellSpace) -> Vec
 
 /// Whether noise dies at the lower and upper end of each axis of cells, for one of the systems along the sweep.
 pub(super) fn natural_ends(systems: &[Arc<dyn System>], space: &CellSpace) -> Vec<[bool; 2]> {
-    let axes = space.axes().iter();
-    let ranges: Vec<(f64, f64)> = axes.map(|axis| (axis.from(), axis.to())).collect();
+    let ranges = space.ranges();
     let axes = space.axes().iter().enumerate();
     axes.map(|(axis, cells)| {
         let systems = systems.iter().filter(|_| !cells.is_modes());

@@ -1,0 +1,132 @@
+//! Ranges of systems whose densities are known, and of systems that have none.
+
+use super::*;
+use crate::system::{TypedModel, registry};
+
+#[test]
+fn a_normal_density_is_held_to_six_deviations_and_not_much_more() {
+    // Without friction and cubic stiffness both marginals are normal with variance σ²/(2κ).
+    let model = registry::find("coulomb").unwrap();
+    for sigma2 in [0.01, 1e-6] {
+        let given = [("kappa", 0.05), ("f_c", 0.0), ("sigma2", sigma2)];
+        let system = model.system_with(&given).unwrap();
+        let deviation = (sigma2 / 0.1_f64).sqrt();
+        let ranges = automatic_ranges(&[system], &[[None; 2]; 2], 1, &Cancellation::new()).unwrap();
+        for (from, to) in ranges {
+            assert_eq!(from, -to, "alike on both sides of the centre");
+            assert!(
+                to > 5.5 * deviation && to < 8.5 * deviation,
+                "{to} {deviation}"
+            );
+        }
+    }
+}
+
+#[test]
+fn axes_that_may_be_exchanged_have_one_range() {
+    let coupled = |k: f64, noise: f64| {
+        let typed = TypedModel::new("coupled", "Coupled", ["x", "y"])
+            .with_equation("x", format!("x - x^3 - {k} (x - y)"))
+            .with_equation("y", format!("y - y^3 - {k} (y - x)"))
+            .with_noise("x", ["0.6"])
+            .with_noise("y", [noise.to_string()]);
+        typed.build().unwrap().system_with(&[]).unwrap()
+    };
+    let ranges = |k: f64, noise: f64| {
+        let systems = [coupled(0.1, noise), coupled(k, noise)];
+        automatic_ranges(&systems, &[[None; 2]; 2], 1, &Cancellation::new()).unwrap()
+    };
+    let alike = ranges(0.5, 0.6);
+    assert_eq!(alike[0], alike[1]);
+    let different = ranges(0.5, 0.3);
+    assert_ne!(different[0], different[1]);
+}
+
+#[test]
+fn an_end_that_is_given_stays_and_the_other_is_found() {
+    // Growth with a rate that fluctuates: x^(a/D - 1) exp(-x/D) on one side of zero, a gamma density.
+    let (a, d) = (1.0, 0.3);
+    let growth = |sign: f64| {
+        let typed = TypedModel::new("growth", "Growth", ["x"])
+            .with_equation("x", format!("{a} x - {sign} x^2"))
+            .with_noise("x", [format!("sqrt(2 * {d}) x")]);
+        let typed = typed.with_interpretation(crate::system::Interpretation::Stratonovich);
+        typed.build().unwrap().system_with(&[]).unwrap()
+    };
+    let found = |sign: f64, known: KnownEnds| {
+        automatic_ranges(&[growth(sign)], &[known], 1, &Cancellation::new()).unwrap()[0]
+    };
+    let (from, to) = found(1.0, [Some(0.0), None]);
+    // Beyond to no more than a millionth of the mass, and no more than twice the place beyond which that is.
+    let beyond = |x: f64| 1.0 - statrs::function::gamma::gamma_lr(a / d, x / d);
+    assert!(
+        from == 0.0 && beyond(to) < 1e-6 && beyond(0.5 * to) > 1e-6,
+        "{to}"
+    );
+    assert_eq!(found(-1.0, [None, Some(0.0)]), (-to, 0.0));
+    // Without growth all ends at zero, which says nothing of the other end.
+    let dying = TypedModel::new("decay", "Decay", ["x"])
+        .with_equation("x", "-0.5 x - x^2")
+        .with_noise("x", ["0.3 x"])
+        .with_interpretation(crate::system::Interpretation::Ito);
+    let dying = dying.build().unwrap().system_with(&[]).unwrap();
+    let systems = [dying, growth(1.0)];
+    let both = automatic_ranges(&systems, &[[Some(0.0), None]], 1, &Cancellation::new());
+    assert_eq!(both.unwrap(), [(0.0, to.max(2.0))]);
+    // A wall does not keep what has no steady state beside it.
+    let alone = TypedModel::new("free", "Free", ["x"]).with_equation("x", "0.1 x");
+    let alone = alone.with_noise("x", ["0.5"]).build().unwrap();
+    let system = alone.system_with(&[]).unwrap();
+    let known = [[Some(0.0), None]];
+    let found = automatic_ranges(&[system], &known, 1, &Cancellation::new());
+    assert!(
+        matches!(found, Err(RangeError::RunsAway { .. })),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn a_system_without_a_steady_state_has_no_range() {
+    let model = registry::find("coulomb").unwrap();
+    let given = [("kappa", -0.05), ("f_c", 0.0), ("sigma2", 0.01)];
+    let system = model.system_with(&given).unwrap();
+    let found = automatic_ranges(&[system], &[[None; 2]; 2], 1, &Cancellation::new());
+    assert!(
+        matches!(found, Err(RangeError::RunsAway { system: 0, .. })),
+        "{found:?}"
+    );
+    // One axis alone has none: x' = -x + …, y' = 0.1 y + ….
+    let typed = TypedModel::new("half", "Half stable", ["x", "y"])
+        .with_equation("x", "-x")
+        .with_equation("y", "0.1 y");
+    let typed = typed.with_noise("x", ["0.5"]).with_noise("y", ["0.5"]);
+    let model = typed.build().unwrap();
+    let system = model.system_with(&[]).unwrap();
+    let found = automatic_ranges(&[system], &[[None; 2]; 2], 1, &Cancellation::new());
+    assert!(
+        matches!(found, Err(RangeError::RunsAway { axis: 1, .. })),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn the_search_for_a_range_ends_after_steps_that_are_worth_it() {
+    // A lightly damped oscillator takes the longest trajectories there are, and z leaves every box.
+    let typed = crate::system::TypedModel::new("light", "Light damping", ["x", "y", "z"]);
+    let typed = typed
+        .with_equation("x", "y")
+        .with_equation("y", "-x - 1e-4 y");
+    let typed = typed.with_equation("z", "0.01 z").with_noise("y", ["0.01"]);
+    let model = typed.with_noise("z", ["0.5"]).build().unwrap();
+    let system = model.system_with(&[]).unwrap();
+    let known = [[Some(-9.0), Some(9.0)], [Some(-9.0), Some(9.0)], [None; 2]];
+    let found = automatic_ranges(&[system], &known, 1, &Cancellation::new());
+    let Err(RangeError::TooLong {
+        axis, steps, last, ..
+    }) = found
+    else {
+        panic!("{found:?}");
+    };
+    assert!(axis == 2 && last.1 > 100.0, "{axis} {last:?}");
+    assert!(steps < MOST_STEPS + MOST_STEPS / 5, "{steps}");
+}
