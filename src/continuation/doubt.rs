@@ -85,7 +85,7 @@ pub enum Doubt {
     FewModes(f64),
     /// The drift jumps along an axis at a place inside cells: the shape of the density follows where in its cell.
     JumpInsideCells(usize, f64),
-    /// Noise along an axis dies at an end, whose place comes next, and this share of the mass lies in the cells beside it.
+    /// Noise along an axis dies at an end. The fields: the axis, the end, and the share of the mass in cells beside it.
     NaturalEnd(usize, f64, f64),
     /// What leaves Ω moves the value by so much, more than the tolerance; and what would hold it.
     Leak(f64, WiderRange),
