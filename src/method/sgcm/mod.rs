@@ -1,5 +1,5 @@
 //! Stochastic generalized cell mapping: its settings, what a point costs, the choice of its steps, the slope
-//! correction, the source, its session.
+//! correction, the source, its solutions, its session.
 
 #[cfg(test)]
 mod angles_tests;
@@ -10,6 +10,7 @@ mod phases;
 mod phases_tests;
 mod session;
 mod slope_correction;
+mod solved;
 mod source;
 mod steps;
 mod velocities;
