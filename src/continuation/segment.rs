@@ -130,8 +130,8 @@ impl<'a> Work<'a> {
         if self.needs_all && !point.report.status.is_resolved() {
             self.ended.store(true, Ordering::Relaxed);
         }
-        let densities = point.densities.iter();
-        let flanks = densities.map(|one| self.detector.flanks(one));
+        let found = point.densities.iter().zip(&point.detections);
+        let flanks = found.map(|(density, detected)| self.detector.flanks(density, detected));
         let (flanks, unsure): (Flanks, Flanks) = flanks
             .map(|all| all.into_iter().partition(|one| one.is_sure))
             .unzip();

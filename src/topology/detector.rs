@@ -140,14 +140,14 @@ impl Detector for PersistenceDetector {
         }
     }
 
-    fn flanks(&self, density: &EstimatedDensity) -> Vec<Flank> {
+    fn flanks(&self, density: &EstimatedDensity, detected: &Detection) -> Vec<Flank> {
         if let Some(cover) = Cover::of(density) {
             return cover.flanks();
         }
         match density.density.axes.len() {
             1 => shoulders(density),
             _ => {
-                let of_crests = flanks_of_crests(density, self.options.floor);
+                let of_crests = flanks_of_crests(density, self.options.floor, detected);
                 [flanks_from_centre(density), of_crests].concat()
             }
         }

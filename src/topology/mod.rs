@@ -163,9 +163,10 @@ pub trait Detector: Send + Sync {
     }
 
     /// Places of a marginal where a pair of peak and valley may be about to come or go, or on a ray from the centre of
-    /// a joint density where a ring and a moat may; none where the detector knows of none.
-    fn flanks(&self, density: &EstimatedDensity) -> Vec<Flank> {
-        let _ = density;
+    /// a joint density where a ring and a moat may, and where its crests show a peak that was not detected; none where
+    /// the detector knows of none.
+    fn flanks(&self, density: &EstimatedDensity, detected: &Detection) -> Vec<Flank> {
+        let _ = (density, detected);
         Vec::new()
     }
 

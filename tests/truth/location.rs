@@ -144,13 +144,20 @@ fn a_million_samples_locate_an_exact_split_within_a_hundredth_of_the_range() {
 }
 
 /// Samples of a joint density are short in `program` (`exact_bifurcations_lie_in_the_stated_band`), which says less of
-/// the error.
+/// the error. A hundredth of the range is what the values of several seeds are off by as a root mean square; stated
+/// errors, which differ from seed to seed, are three times as large at most.
 #[test]
-#[ignore = "a minute: weak damping asks for long trajectories"]
+#[ignore = "half a minute: weak damping asks for long trajectories"]
 fn a_million_samples_locate_an_exact_ring_at_length() {
-    // 50² cells × 400.
-    let result = rayleigh(50, 5, (-0.1, 0.1)).run(&sgcm(400, 80.0, 1));
-    assert_located(&result, Observable::Joint(0, 1), 0.0, 0.002);
+    let (seeds, hundredth) = (1..=4, 0.002);
+    let squares = seeds.clone().map(|seed| {
+        // 50² cells × 400.
+        let result = rayleigh(50, 5, (-0.1, 0.1)).run(&sgcm(400, 80.0, seed));
+        assert_located(&result, Observable::Joint(0, 1), 0.0, 3.0 * hundredth);
+        rows(&result, Observable::Joint(0, 1))[0].value.powi(2)
+    });
+    let mean = squares.sum::<f64>() / seeds.count() as f64;
+    assert!(mean.sqrt() <= hundredth, "{}", mean.sqrt());
 }
 
 #[test]

@@ -7,7 +7,9 @@
 
 use super::Flank;
 use crate::density::EstimatedDensity;
+use crate::space::Axis;
 use crate::topology::field::{Field, Jet};
+use crate::topology::{Detection, Feature, FeatureKind, Verdict};
 
 /// Cells by which a crest may move aside from one line to the next: steeper ones are followed along the other axis.
 const ASIDE: f64 = 2.0;
@@ -40,43 +42,147 @@ struct Top {
 /// the centres of cells. None where a derivative of the density jumps, of marginals, of sampled densities, and where
 /// there is a centre of symmetry: indicators are read there, and the crest of a ring about it has no slope. Below a
 /// floor, a share of the maximum, those alone of which schemes are sure: what else may be there is too low to count.
-pub(crate) fn flanks_of_crests(estimated: &EstimatedDensity, floor: f64) -> Vec<Flank> {
+///
+/// A peak of a crest near which none is counted is one of them, and not sure: along a crest that crosses cells
+/// obliquely their values rise and fall with its distance from their centres, and show no lower peak than that.
+pub(crate) fn flanks_of_crests(
+    estimated: &EstimatedDensity,
+    floor: f64,
+    detected: &Detection,
+) -> Vec<Flank> {
     let is_smooth = estimated.structure.kinks.iter().all(|kink| kink.is_bend());
     let usable = is_smooth && estimated.structure.centre.is_none() && !estimated.is_noisy();
     let usable = usable && estimated.density.axes.len() == 2;
     match Field::new(estimated).filter(|_| usable) {
         Some(field) => [0, 1]
             .into_iter()
-            .flat_map(|along| flanks(estimated, &field, (along, floor)))
+            .flat_map(|along| {
+                let crests = Crests::new(estimated, &field, along);
+                let uncounted = crests.uncounted(floor, detected);
+                [crests.flanks(floor), uncounted].concat()
+            })
             .collect(),
         None => Vec::new(),
     }
 }
 
-fn flanks(
-    estimated: &EstimatedDensity,
-    field: &Field<'_>,
-    (along, floor): (usize, f64),
-) -> Vec<Flank> {
-    let (axis, across) = (&field.axes()[along], &field.axes()[1 - along]);
-    let tops: Vec<Vec<Top>> = (0..axis.count())
-        .map(|line| tops(estimated, field, along, line))
-        .collect();
-    let near = |line: usize, top: &Top| -> Option<Top> {
+/// The highest points of the lines across an axis.
+struct Crests<'f> {
+    along: usize,
+    /// That they run along, and that across.
+    axes: [&'f Axis; 2],
+    /// Of each line of cells.
+    tops: Vec<Vec<Top>>,
+}
+
+impl<'f> Crests<'f> {
+    fn new(estimated: &EstimatedDensity, field: &'f Field<'_>, along: usize) -> Self {
+        let axes = [along, 1 - along].map(|axis| &field.axes()[axis]);
+        let lines = 0..axes[0].count();
+        Self {
+            along,
+            axes,
+            tops: lines
+                .map(|line| tops(estimated, field, along, line))
+                .collect(),
+        }
+    }
+
+    /// The point of a line that continues a crest beside it.
+    fn near(&self, line: usize, top: &Top) -> Option<Top> {
+        let across = self.axes[1];
         let reach = ASIDE * across.width(across.find(top.place)?);
         let distance = |one: &&Top| (one.place - top.place).abs();
-        let nearest = tops[line]
+        let nearest = self.tops[line]
             .iter()
             .min_by(|a, b| distance(a).total_cmp(&distance(b)));
         nearest.filter(|one| distance(one) <= reach).copied()
-    };
-    let mut found = Vec::new();
-    let inner = tops.iter().enumerate().skip(1);
-    for (line, own) in inner.take(axis.count().saturating_sub(2)) {
-        for here in own {
-            let (Some(left), Some(right)) = (near(line - 1, here), near(line + 1, here)) else {
-                continue;
-            };
+    }
+
+    /// Points of inner lines with their neighbours below and above along the crest.
+    fn inner(&self) -> impl Iterator<Item = (usize, [Top; 3])> {
+        let lines = 1..self.tops.len().saturating_sub(1);
+        lines.flat_map(move |line| {
+            self.tops[line].iter().filter_map(move |here| {
+                let [left, right] = [line - 1, line + 1].map(|one| self.near(one, here));
+                Some((line, [left?, *here, right?]))
+            })
+        })
+    }
+
+    /// Peaks along crests of which the schemes are sure and that would count, where none is. What rings have of peaks
+    /// is not looked for.
+    fn uncounted(&self, floor: f64, detected: &Detection) -> Vec<Flank> {
+        if detected.signature.rings > 0 {
+            return Vec::new();
+        }
+        let sure = |top: &Top| top.slope.abs() > CLEAR * top.error;
+        let peaks = self.inner().filter(|(_, [_, here, right])| {
+            here.slope > 0.0 && right.slope < 0.0 && sure(here) && sure(right)
+        });
+        let uncounted = peaks.filter(|&(line, [_, here, _])| {
+            self.prominence(line, here) > floor && !self.is_counted(line, &here, detected)
+        });
+        uncounted
+            .map(|(line, [_, here, _])| Flank {
+                rising: false,
+                place: self.axes[0].centre(line),
+                value: here.slope,
+                line: 1 + self.along,
+                is_sure: false,
+            })
+            .collect()
+    }
+
+    /// Height of a point of a crest above the lowest on the way to higher ones, on the side where that is less deep, as
+    /// a share of the maximum of the density; its own height where no higher one is on the crest.
+    fn prominence(&self, line: usize, top: Top) -> f64 {
+        let beside = [line.saturating_sub(1), line + 1];
+        let highest = beside.iter().filter_map(|&one| self.near(one, &top));
+        let highest = highest.fold(top.height, |most, one| most.max(one.height));
+        let lowest = [-1, 1].map(|side| {
+            let mut here = top;
+            let mut lowest = highest;
+            let mut lines = (1..).map_while(|steps| line.checked_add_signed(steps * side));
+            loop {
+                let next = lines.next().filter(|&one| one < self.tops.len());
+                let Some(next) = next.and_then(|one| self.near(one, &here)) else {
+                    return 0.0;
+                };
+                if next.height > highest {
+                    return lowest;
+                }
+                lowest = lowest.min(next.height);
+                here = next;
+            }
+        });
+        highest - lowest[0].max(lowest[1])
+    }
+
+    /// Whether a peak that counts was detected near a point of a crest.
+    fn is_counted(&self, line: usize, top: &Top, detected: &Detection) -> bool {
+        let counts =
+            |one: &&Feature| one.kind == FeatureKind::Peak && one.verdict != Verdict::Absent;
+        let at = [self.axes[0].centre(line), top.place];
+        let is_near = |peak: &Feature| {
+            let mut places = [self.along, 1 - self.along]
+                .into_iter()
+                .zip(self.axes)
+                .zip(at);
+            places.all(|((place, axis), at)| {
+                let width = axis.find(at).map_or(0.0, |cell| axis.width(cell));
+                (peak.position[place] - at).abs() <= ASIDE * width
+            })
+        };
+        let mut peaks = detected.features.iter().filter(counts);
+        peaks.any(is_near)
+    }
+
+    /// The extrema of the slope along crests.
+    fn flanks(&self, floor: f64) -> Vec<Flank> {
+        let axis = self.axes[0];
+        let mut found = Vec::new();
+        for (line, [left, here, right]) in self.inner() {
             let (up, down) = (here.slope - left.slope, here.slope - right.slope);
             let bend = (up + down) / axis.width(line).powi(2);
             let is_turn = (up >= 0.0 && down > 0.0) || (up <= 0.0 && down < 0.0);
@@ -90,13 +196,13 @@ fn flanks(
                     rising,
                     place: axis.centre(line),
                     value: if rising { here.slope } else { -here.slope },
-                    line: 1 + along,
+                    line: 1 + self.along,
                     is_sure,
                 });
             }
         }
+        found
     }
-    found
 }
 
 /// The points of crests on the line of cells at a place of an axis.
@@ -148,40 +254,52 @@ mod tests {
     use super::flanks_of_crests;
     use crate::density::{Density, EstimatedDensity, Observable};
     use crate::space::Axis;
+    use crate::topology::{DetectOptions, Detector, Flank, PersistenceDetector};
 
     /// log p = 2 (θ x - cosh x + c x²/2) - (y - x/2)²: along the crest y = x/2 the slope is 2 (θ - sinh x + c x), with
     /// extrema where cosh x = c.
+    fn tilted(c: f64, theta: f64, cells: usize) -> EstimatedDensity {
+        let axis = Axis::uniform(-3.0, 3.0, cells).unwrap();
+        let centres = axis.centres();
+        let log =
+            |x: f64, y: f64| 2.0 * (theta * x - x.cosh() + 0.5 * c * x * x) - (y - 0.5 * x).powi(2);
+        let rows = centres.iter();
+        let values: Vec<f64> = rows
+            .flat_map(|x| centres.iter().map(move |y| log(*x, *y).exp()))
+            .collect();
+        EstimatedDensity {
+            negligible: 1e-7,
+            ..EstimatedDensity::new(
+                Observable::Joint(0, 1),
+                Density {
+                    axes: vec![axis.clone(), axis],
+                    values,
+                },
+            )
+        }
+    }
+
+    /// The peaks that are counted, and the flanks.
+    fn seen(density: &EstimatedDensity) -> (usize, Vec<Flank>) {
+        let detected = PersistenceDetector::new(DetectOptions::default(), 1).detect(density);
+        let flanks = flanks_of_crests(density, 1e-3, &detected);
+        (detected.signature.peaks, flanks)
+    }
+
+    /// Where the slope along the crest has its extrema, and the tilt at which it is zero there.
+    fn fold(c: f64) -> (f64, f64) {
+        let at = c.acosh();
+        (at, (at.sinh() - c * at).abs())
+    }
+
     #[test]
     fn the_slope_along_a_crest_passes_zero_with_its_folds() {
-        let c: f64 = 1.2;
-        let at = c.acosh();
-        let fold = (at.sinh() - c * at).abs();
-        let flanks = |theta: f64| {
-            let axis = Axis::uniform(-3.0, 3.0, 100).unwrap();
-            let centres = axis.centres();
-            let log = |x: f64, y: f64| {
-                2.0 * (theta * x - x.cosh() + 0.5 * c * x * x) - (y - 0.5 * x).powi(2)
-            };
-            let rows = centres.iter();
-            let values: Vec<f64> = rows
-                .flat_map(|x| centres.iter().map(move |y| log(*x, *y).exp()))
-                .collect();
-            let estimated = EstimatedDensity {
-                negligible: 1e-7,
-                ..EstimatedDensity::new(
-                    Observable::Joint(0, 1),
-                    Density {
-                        axes: vec![axis.clone(), axis],
-                        values,
-                    },
-                )
-            };
-            flanks_of_crests(&estimated, 1e-3)
-        };
+        let c = 1.2;
+        let (at, fold) = fold(c);
         for theta in [-2.0, -0.5, 0.5, 2.0].map(|share| share * fold) {
             for rising in [false, true] {
-                let found = flanks(theta);
-                let is_it = |one: &&super::Flank| one.line == 1 && one.rising == rising;
+                let (_, found) = seen(&tilted(c, theta, 100));
+                let is_it = |one: &&Flank| one.line == 1 && one.rising == rising && one.is_sure;
                 let found = found.iter().find(is_it).unwrap();
                 let side = if rising { 1.0 } else { -1.0 };
                 let exact = 2.0 * (side * theta + fold);
@@ -191,6 +309,33 @@ mod tests {
                 assert!(
                     (found.value - exact).abs() < 2.0 * read,
                     "{found:?} {exact}"
+                );
+            }
+        }
+    }
+
+    /// Between the folds there are two peaks, which lie so close to each other that cells whose rows the crest crosses
+    /// obliquely show one on some grids: it is told there that the crest has another, and nowhere else.
+    /// Between the folds there are two peaks. Odd numbers of cells show one where the tilt is near a fold, even ones
+    /// both: the crest tells of the other where one is counted, and beyond the folds it tells nothing.
+    #[test]
+    fn peaks_of_a_crest_that_cells_do_not_count_are_told() {
+        for (c, odd) in [(1.05, 41), (1.08, 31), (1.12, 25)] {
+            let (_, fold) = fold(c);
+            for (cells, share, peaks, told) in [
+                (odd, 0.6, 1, true),
+                (odd, 0.8, 1, true),
+                (odd, 1.2, 1, false),
+                (odd, 2.0, 1, false),
+                (40, 0.6, 2, false),
+                (40, 1.2, 1, false),
+            ] {
+                let (counted, flanks) = seen(&tilted(c, share * fold, cells));
+                let is_told = flanks.iter().any(|one| !one.is_sure);
+                assert_eq!(
+                    (counted, is_told),
+                    (peaks, told),
+                    "{c}, {cells} cells, {share}"
                 );
             }
         }
