@@ -22,8 +22,11 @@ const COARSE: [usize; 4] = [100, 40, 14, 8];
 const MOST: [usize; 4] = [2000, 240, 60, 20];
 /// Cells an axis of the second coarse grid to those of the first.
 const FINER: f64 = 1.5;
-/// Modes of an axis whose number is left open too.
+/// Modes with which cells are tried at most, but along an angle, whose densities need as many as they do: fewer are off
+/// by more than the cells.
 const TRIAL_MODES: usize = 4;
+/// Modes along an angle where the method has none.
+const TRIAL_HARMONICS: usize = 16;
 /// Orders of convergence that are believed: a steeper fall is mostly luck.
 const ORDERS: (f64, f64) = (1.0, 6.0);
 /// The wanted error is divided by this, since what is seen at the ends may be exceeded between.
@@ -79,6 +82,15 @@ impl Settings {
         }
         self.chosen.push(note);
         Ok(())
+    }
+
+    /// The same with the cells of the first coarse grid where their numbers are left open.
+    pub(super) fn on_coarse_cells(&self, ends: &[Arc<dyn System>]) -> Self {
+        let kind = self.method.kind;
+        let cut = self.axes.iter().filter(|axis| axis.is_cut(kind)).count();
+        let mut coarse = self.clone();
+        coarse.set_counts(COARSE[cut.clamp(1, COARSE.len()) - 1], ends);
+        coarse
     }
 
     /// Gives every open axis this many cells, and every axis its grading.
@@ -164,9 +176,12 @@ impl Settings {
         }
         let kind = trial.method.kind;
         for axis in &mut trial.axes {
-            if axis.modes_by(kind) == Some(Modes::Auto) {
-                axis.modes = Some(Modes::Number(TRIAL_MODES));
-            }
+            axis.modes = match (axis.modes_by(kind), is_turn(axis)) {
+                (Some(Modes::Auto), true) => Some(Modes::Number(TRIAL_HARMONICS)),
+                (Some(Modes::Auto), false) => Some(Modes::Number(TRIAL_MODES)),
+                (Some(Modes::Number(given)), false) => Some(Modes::Number(given.min(TRIAL_MODES))),
+                _ => axis.modes,
+            };
         }
         let space = cell_space(&trial.document, &trial.family, &trial.axes, kind)
             .map_err(|diagnostic| self.refuse(*diagnostic))?;

@@ -41,13 +41,17 @@ impl Settings {
         // Formulas that are not finite there would leave coarse grids without a density.
         self.check_equations()?;
         self.check_density()?;
+        // Few harmonics of an angle would hide what cells are off by.
+        tell("trying numbers of modes on coarse grids");
+        let modes_were_given = !self.find_modes(&ends, cancellation)?;
         tell("trying numbers of cells on coarse grids");
         self.find_counts(&ends, cancellation)?;
         self.find_gradings(&ends);
         // Now of the cells that were found.
         self.check_memory()?;
-        tell("trying numbers of modes on coarse grids");
-        self.find_modes(cancellation)?;
+        if modes_were_given {
+            self.judge_modes(cancellation)?;
+        }
         tell("looking for ranges of quantities");
         self.find_bins(cancellation)?;
         self.find_frequencies(cancellation)?;
@@ -193,8 +197,13 @@ impl Settings {
         found.map_err(|error| self.refuse(self.no_range(&error)))
     }
 
-    /// Replaces numbers of modes that are left to the program.
-    fn find_modes(&mut self, cancellation: &Cancellation) -> Result<(), Report> {
+    /// Replaces numbers of modes that are left to the program, and says whether there are any. They are tried on cells
+    /// of their own, whatever the numbers of cells will be.
+    fn find_modes(
+        &mut self,
+        ends: &[Arc<dyn System>],
+        cancellation: &Cancellation,
+    ) -> Result<bool, Report> {
         let kind = self.method.kind;
         let open = self.axes.iter().enumerate();
         let open: Vec<usize> = open
@@ -202,13 +211,13 @@ impl Settings {
             .map(|(index, _)| index)
             .collect();
         if open.is_empty() {
-            return self.judge_modes(cancellation);
+            return Ok(false);
         }
         // With any number they make a space; the right one is then found.
         for &axis in &open {
             self.axes[axis].modes = Some(Modes::Number(2));
         }
-        let problem = self.clone().fixed()?.problem;
+        let problem = self.on_coarse_cells(ends).fixed()?.problem;
         let found = automatic_modes(&problem, &open, &self.method.generator, cancellation);
         let found = found.map_err(|error| self.refuse_cells(Diagnostic::new(error.to_string())))?;
         let names: Vec<&str> = open.iter().map(|&axis| self.family.axis(axis)).collect();
@@ -230,7 +239,7 @@ impl Settings {
         for axis in open {
             self.axes[axis].modes = Some(Modes::Number(found.count));
         }
-        Ok(())
+        Ok(true)
     }
 
     /// Says what numbers of modes that are given leave out, where that is much.

@@ -168,12 +168,30 @@ fn below(path: &[&str]) -> Vec<String> {
     names
 }
 
+/// Names that are tried for what is said in another way, and how it is said.
+const SAID_ELSEWHERE: [(&[&str], &str); 2] = [
+    (
+        &["angle", "angles", "periodic", "wrap"],
+        "an angle is an axis with the bound \"periodic\", as in `[system.bounds]` with `theta = \"periodic\"` (docs/angles.md)",
+    ),
+    (
+        &["forcing", "force", "drive", "driving", "excitation"],
+        "a force that depends on time is written into the equations with `t`, as in `f cos(omega t)` (docs/forcing.md)",
+    ),
+];
+
 fn unknown_key(entry: &Entry, path: &[&str]) -> Diagnostic {
     let parent = &path[..path.len() - 1];
     let names = below(parent);
     let plain: Vec<&str> = names.iter().map(|name| name.trim_matches('`')).collect();
     let title = format!("unknown key `{}`", quotable(&path.join(".")));
     let diagnostic = Diagnostic::new(title).at(&entry.key_place, "not a key of a sweep file");
+    if let Some((_, remedy)) = SAID_ELSEWHERE
+        .iter()
+        .find(|one| one.0.contains(&entry.key.as_str()))
+    {
+        return diagnostic.allowed(names.join(", ")).remedy(*remedy);
+    }
     // The very name of a table says more than likeness does.
     if let Some(table) = table_by_name(&entry.key) {
         return diagnostic.remedy(format!("did you mean `{table}`?"));
