@@ -10,9 +10,11 @@ use crate::density::{EstimatedDensity, WIGGLE};
 
 /// Most steps of Newton's method.
 const MOST_STEPS: usize = 12;
-/// Longest way from the centre of the candidate's cell, in cells. Along a trench that lies across the cells the lowest
-/// of them may be several cells away from the lowest point.
+/// Longest way from the centre of the candidate's cell, in cells, or in the longest of its steps. Along a trench that
+/// lies across the cells the lowest of them may be several cells away from the lowest point.
 const FARTHEST: f64 = 6.0;
+/// The same as a share of the range, where a crest is so level that its highest cell may be anywhere.
+const MOST_OF_RANGE: f64 = 0.1;
 /// A direction whose curvature is a smaller share of the larger one is flat, as along a rim.
 pub(super) const FLAT: f64 = 0.02;
 /// A flat direction is followed all the same where a rougher reconstruction agrees on its curvature to this share.
@@ -65,17 +67,19 @@ impl Critical {
                 None => false,
             })
             .collect();
+        let mut reach = None;
         for _ in 0..MOST_STEPS {
             let jet = field.stencil(&position, 0)?.jet(values);
+            let reach = reach.get_or_insert_with(|| reach_from(field, centre, &jet));
             let rough = || Some(field.stencil(&position, 1)?.jet(values));
             let step = step(&jet, &rough, kind, &pinned);
             let mut longest: f64 = 0.0;
             for k in 0..position.len() {
-                let cell = field.cell_width(k, centre[k]);
-                let limited = step[k].clamp(-cell, cell);
-                longest = longest.max(limited.abs() / cell);
+                let longest_step = reach[k] / FARTHEST;
+                let limited = step[k].clamp(-longest_step, longest_step);
+                longest = longest.max(limited.abs() / field.cell_width(k, centre[k]));
                 let unit = field.unit(k);
-                let (low, high) = field.side(k, centre[k], FARTHEST * cell * unit);
+                let (low, high) = field.side(k, centre[k], reach[k] * unit);
                 position[k] = (position[k] + limited * unit).clamp(low, high);
             }
             if longest < SETTLED {
@@ -246,6 +250,30 @@ fn holds(field: &Field<'_>, at: &[f64], k: usize, kind: FeatureKind, values: &[f
         FeatureKind::Crater => below < 0.0 && above > 0.0,
         FeatureKind::Valley => below * above < 0.0,
     }
+}
+
+/// How far along each axis, in its units, a critical point may lie from the cell that shows it. Along a crest or a
+/// trench that crosses cells obliquely, their values wave by κh²/8, with the curvature κ across it and the width h of
+/// cells there: as much as the crest itself changes over h √(κ/κ') / 2, with the curvature κ' along it.
+fn reach_from(field: &Field<'_>, centre: &[f64], jet: &Jet) -> [f64; 2] {
+    let cells: Vec<f64> = (0..centre.len())
+        .map(|k| field.cell_width(k, centre[k]))
+        .collect();
+    let mut reach = [0, 1].map(|k| FARTHEST * cells.get(k).copied().unwrap_or_default());
+    let [_, _] = cells[..] else {
+        return reach;
+    };
+    let mut principal = jet.principal();
+    principal.sort_by(|a, b| a.value.abs().total_cmp(&b.value.abs()));
+    let [along, across] = principal;
+    let width = (cells[0] * across.direction[0]).hypot(cells[1] * across.direction[1]);
+    let wave = 0.5 * width * (across.value / along.value).abs().sqrt();
+    for (k, axis) in field.axes().iter().enumerate() {
+        let most = MOST_OF_RANGE * (axis.to() - axis.from()) / field.unit(k);
+        let away = (wave * along.direction[k].abs()).min(most);
+        reach[k] = reach[k].max(if away.is_finite() { away } else { 0.0 });
+    }
+    reach
 }
 
 /// Newton's step in units of the axes, along the directions that are curved as the kind wants.

@@ -2,6 +2,7 @@
 
 mod births;
 mod plane;
+mod turns;
 
 use super::*;
 use crate::density::{Density, Observable, Variants};
