@@ -88,7 +88,7 @@ fn assert_compiles(text: &str) {
 
 #[test]
 fn tables_of_all_kinds_of_rows_compile() {
-    let coulomb = "cells.x.count=24 cells.y.count=24 sweep.points=5 locate.tolerance=5e-3";
+    let coulomb = "cells.x.count=40 cells.y.count=40 sweep.points=5 locate.tolerance=5e-3";
     let eq8 = "cells.x.count=16 cells.y.count=16 cells.z.count=10 sweep.points=2";
     for (sweep, row) in [
         (format!("coulomb_fc.toml {coulomb}"), "PB1"),
