@@ -16,7 +16,8 @@ pub struct Point {
     /// The watched densities, in the order of [`Subject::observables`](super::Subject::observables); empty when there
     /// is no density.
     pub densities: Vec<EstimatedDensity>,
-    /// What the detector says of each; same order.
+    /// What the detector says of each, in the same order; empty where the solver stopped so far from its tolerance that
+    /// nothing can be read from them.
     pub detections: Vec<Detection>,
     /// Largest Hellinger distance over the watched densities to the point below; `None` for the first.
     pub distance: Option<f64>,
@@ -50,7 +51,7 @@ impl Point {
     ) -> Option<(Self, Option<Refusal>)> {
         let clock = Instant::now();
         let (solution, refusal) = match session.solve(value) {
-            Ok(solution) => (readable(solution.detached()), None),
+            Ok(solution) => (solution.detached(), None),
             Err(SourceError::Interrupted) => return None,
             Err(SourceError::Method(error)) => {
                 let mut report = SolveReport::solved(method);
@@ -65,28 +66,20 @@ impl Point {
         Some((point, refusal))
     }
 
-    /// Detects in its densities.
+    /// Detects in its densities, if anything can be read from them.
     pub(crate) fn detect(&mut self, detector: &dyn Detector) {
-        let densities = self.densities.iter();
+        let densities = self.densities.iter().filter(|_| self.is_readable());
         self.detections = densities.map(|one| detector.detect(one)).collect();
+    }
+
+    /// Whether the solver came near enough to its tolerance for peaks to be no doing of what is left, as where wells
+    /// exchange mass more slowly than the digits of rates can tell. An error that is not a number is no small one.
+    fn is_readable(&self) -> bool {
+        let mut findings = self.report.findings.iter();
+        findings.all(|one| !matches!(one, Finding::NotConverged { error } if error.is_nan() || *error > MOST_ERROR))
     }
 }
 
 /// Error of a density whose solver stopped before its tolerance above which nothing is read from it: a tenth of what
 /// cells are chosen for.
 const MOST_ERROR: f64 = 1e-4;
-
-/// A solution without its densities where the solver stopped so early that peaks may come from nothing else, as where
-/// wells exchange mass more slowly than the digits of rates can tell.
-fn readable(solution: Solution<'_>) -> Solution<'_> {
-    let findings = solution.report.findings.iter();
-    let mut errors = findings.filter_map(|one| match one {
-        Finding::NotConverged { error } => Some(*error),
-        _ => None,
-    });
-    // Not a number is no small one.
-    match errors.all(|error| error <= MOST_ERROR) {
-        true => solution,
-        false => Solution::without_density(solution.report),
-    }
-}

@@ -40,7 +40,7 @@ fn shipped_sweeps_are_sound_and_their_resolved_files_give_the_same() {
 
 #[test]
 fn what_takes_long_is_told_while_it_does() {
-    // Without the cubic stiffness there is no steady state, which the trials of modes look for at length.
+    // Without the cubic stiffness there is no steady state, which the trials of cells look for at length.
     let room = Room::new();
     let text = std::fs::read_to_string(shipped("sweeps/gallery/bliman_sorine.toml")).unwrap();
     let lines = text.lines().filter(|line| !line.starts_with("mu = "));
@@ -49,7 +49,7 @@ fn what_takes_long_is_told_while_it_does() {
     let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
     // It is told before the trials end, which nobody waits for here.
     let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
-    let words = "trying numbers of modes on coarse grids";
+    let words = "trying numbers of cells on coarse grids";
     assert!(lines.any(|line| line.unwrap().contains(words)));
     child.kill().unwrap();
     child.wait().unwrap();

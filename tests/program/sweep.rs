@@ -112,6 +112,27 @@ fn coulomb_goes_from_two_peaks_and_a_crater_to_one_peak() {
     );
 }
 
+/// With negative friction the oscillator keeps moving, and x has two peaks. At one end of this sweep so few cells count
+/// one, and finer cells both.
+#[test]
+fn ends_that_are_counted_differently_without_a_change_are_named() {
+    let room = Room::new();
+    let cells = "cells.x.count=24 cells.y.count=24 figures.formats=[]";
+    let line = format!(
+        "sweep sweeps/coulomb_fc.toml --out run {cells} sweep.points=3 sweep.to=-0.005 figures.at=[-0.01] locate.tolerance=5e-3"
+    );
+    let printed = room.solved(&line);
+    let [below, above] = ["-0.02: x 2 peaks", "-0.005: x 1 peak"];
+    assert!(
+        printed.out.contains(below) && printed.out.contains(above),
+        "{}",
+        printed.out
+    );
+    assert!(room.table("run/bifurcations.csv").changes("x").is_empty());
+    let words = "of x, y, xy finer cells show no change between the ends";
+    assert!(printed.out.contains(words), "{}", printed.out);
+}
+
 #[test]
 fn coulomb_as_printed_in_equation_five_has_one_peak_in_x() {
     let cells = "cells.x.count=30 cells.y={from=-0.4,to=0.4,count=30}";

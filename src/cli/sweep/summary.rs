@@ -4,7 +4,7 @@ use std::path::Path;
 
 use comfy_table::{Table, presets};
 
-use crate::continuation::{Label, Point, PointStatus, RowWords, SweepResult};
+use crate::continuation::{Label, Located, Point, PointStatus, RowWords, SweepResult};
 use crate::job::QUICK_POINTS;
 use crate::run::{doubt_in_words, format_number, format_with_error};
 use crate::system::{Family, MeasureLevel};
@@ -145,7 +145,31 @@ fn ends(result: &SweepResult) -> String {
             words.join(", ")
         );
     }
-    text
+    text + &unlike_ends(result, [solved().next(), solved().next_back()])
+}
+
+/// Names the densities that are counted differently at both ends of a sweep without a change between: finer cells have
+/// shown that there is none.
+fn unlike_ends(result: &SweepResult, ends: [Option<&Point>; 2]) -> String {
+    let [Some(first), Some(last)] = ends else {
+        return String::new();
+    };
+    let pairs = first.detections.iter().zip(&last.detections);
+    let pairs = result.subject.observables.iter().zip(pairs);
+    let unlike = pairs.filter(|(observable, (first, last))| {
+        let is_of = |row: &&Located| row.observable == **observable;
+        first.signature != last.signature && result.bifurcations().find(is_of).is_none()
+    });
+    let names: Vec<String> = unlike
+        .map(|(observable, _)| observable.name(&result.subject.family))
+        .collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    format!(
+        "of {} finer cells show no change between the ends: at one of them these cells are too wide to count by\n",
+        names.join(", ")
+    )
 }
 
 /// The files of a run that are there, in a fixed order.
