@@ -270,7 +270,7 @@ impl<'p, 'a> Closer<'p, 'a> {
         });
         Some(Found {
             rows: rows.collect(),
-            is_sure: walk.unsure.is_empty(),
+            unsure: walk.unsure.iter().map(|one| one.1).collect(),
             is_wide: walk.points.iter().any(has_wide_cells),
             points: walk.points,
         })

@@ -10,8 +10,8 @@ use crate::topology::Signature;
 pub(super) struct Found {
     pub(super) rows: Vec<Located>,
     pub(super) points: Vec<Point>,
-    /// Whether finer cells tell at all of their values whether a pair is there.
-    pub(super) is_sure: bool,
+    /// Values of which finer cells do not tell either whether a pair is there.
+    pub(super) unsure: Vec<f64>,
     /// Whether they are wide themselves.
     pub(super) is_wide: bool,
 }

@@ -88,7 +88,7 @@ impl<'p> InDoubt<'p> {
     }
 
     /// Forgets of a stretch what finer cells have settled there, whether a pair is there: those that are not wide, or,
-    /// where the sweep's are wide, those whose rows were taken.
+    /// where the sweep's are wide, those whose rows were taken. What finer cells do not tell either takes its place.
     pub(super) fn settle(
         &mut self,
         (place, [lower, upper]): (usize, [f64; 2]),
@@ -99,9 +99,11 @@ impl<'p> InDoubt<'p> {
         if !by.is_wide || is_taken {
             self.wide.retain(|one| !is_there(one));
         }
-        if by.is_sure && !by.is_wide {
+        if !by.is_wide {
             self.unsure.retain(|one| !is_there(one));
         }
+        self.unsure
+            .extend(by.unsure.iter().map(|&value| (place, value)));
     }
 
     /// A stretch that reaches a step farther to either side, with all of the rows that lie in a part of it; `None`
