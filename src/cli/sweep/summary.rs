@@ -158,7 +158,13 @@ fn unlike_ends(result: &SweepResult, ends: [Option<&Point>; 2]) -> String {
     let pairs = result.subject.observables.iter().zip(pairs);
     let unlike = pairs.filter(|(observable, (first, last))| {
         let is_of = |row: &&Located| row.observable == **observable;
-        first.signature != last.signature && result.bifurcations().find(is_of).is_none()
+        let is_looked_at = result
+            .looks
+            .iter()
+            .any(|look| look.observable == **observable);
+        is_looked_at
+            && first.signature != last.signature
+            && result.bifurcations().find(is_of).is_none()
     });
     let names: Vec<String> = unlike
         .map(|(observable, _)| observable.name(&result.subject.family))
