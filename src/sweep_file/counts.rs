@@ -22,8 +22,8 @@ const COARSE: [usize; 4] = [100, 40, 14, 8];
 const MOST: [usize; 4] = [2000, 240, 60, 20];
 /// Cells an axis of the second coarse grid to those of the first.
 const FINER: f64 = 1.5;
-/// Modes with which cells are tried at most, but along an angle, whose densities need as many as they do: fewer are off
-/// by more than the cells.
+/// Most modes that are used while numbers of cells are tried. Angles keep their own number: with fewer, the error of
+/// the modes would hide that of the cells.
 const TRIAL_MODES: usize = 4;
 /// Modes along an angle where the method has none.
 const TRIAL_HARMONICS: usize = 16;
@@ -134,7 +134,7 @@ impl Settings {
         ends: &[Arc<dyn System>],
         cancellation: &Cancellation,
     ) -> Result<Option<f64>, Report> {
-        let Some(problem) = self.problem_with(count, ends)? else {
+        let Some(problem) = self.problem_with(count, ends, TRIAL_MODES)? else {
             return Ok(None);
         };
         let Ok(source) = GeneratorSource::new(&problem, &self.method.generator) else {
@@ -159,11 +159,13 @@ impl Settings {
         Ok(largest)
     }
 
-    /// What would be solved with this many cells; `None` where the method refuses it.
+    /// What would be solved with this many cells, and so many modes at most along axes that are no angles; `None` where
+    /// the method refuses it.
     fn problem_with(
         &self,
         count: usize,
         ends: &[Arc<dyn System>],
+        most_modes: usize,
     ) -> Result<Option<Problem>, Report> {
         let mut trial = self.clone();
         trial.set_counts(count, ends);
@@ -179,7 +181,7 @@ impl Settings {
             axis.modes = match (axis.modes_by(kind), is_turn(axis)) {
                 (Some(Modes::Auto), true) => Some(Modes::Number(TRIAL_HARMONICS)),
                 (Some(Modes::Auto), false) => Some(Modes::Number(TRIAL_MODES)),
-                (Some(Modes::Number(given)), false) => Some(Modes::Number(given.min(TRIAL_MODES))),
+                (Some(Modes::Number(given)), false) => Some(Modes::Number(given.min(most_modes))),
                 _ => axis.modes,
             };
         }
@@ -207,7 +209,7 @@ impl Settings {
             memory_limit: self.method.generator.memory_limit,
             ..GeneratorMethodOptions::default()
         });
-        let problem = self.problem_with(count, ends);
+        let problem = self.problem_with(count, ends, usize::MAX);
         let Ok(Some(problem)) = problem else {
             return false;
         };

@@ -270,8 +270,11 @@ fn reach_from(field: &Field<'_>, centre: &[f64], jet: &Jet) -> [f64; 2] {
     let wave = 0.5 * width * (across.value / along.value).abs().sqrt();
     for (k, axis) in field.axes().iter().enumerate() {
         let most = MOST_OF_RANGE * (axis.to() - axis.from()) / field.unit(k);
-        let away = (wave * along.direction[k].abs()).min(most);
-        reach[k] = reach[k].max(if away.is_finite() { away } else { 0.0 });
+        let away = wave * along.direction[k].abs();
+        // No wave is known where nothing is curved, or an axis lies across a crest that is level.
+        if !away.is_nan() {
+            reach[k] = reach[k].max(away.min(most));
+        }
     }
     reach
 }

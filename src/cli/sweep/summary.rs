@@ -173,7 +173,8 @@ fn unlike_ends(result: &SweepResult, ends: [Option<&Point>; 2]) -> String {
         return String::new();
     }
     format!(
-        "of {} finer cells show no change between the ends: at one of them these cells are too wide to count by\n",
+        "{}: the counts at both ends differ, but finer cells show no change between them; the cells of this sweep are too \
+         wide to count by at one end: give more\n",
         names.join(", ")
     )
 }

@@ -69,7 +69,7 @@ pub(crate) fn flanks_of_crests(
 /// The highest points of the lines across an axis.
 struct Crests<'f> {
     along: usize,
-    /// That they run along, and that across.
+    /// The axis along which the crests run, and the one across.
     axes: [&'f Axis; 2],
     /// Of each line of cells.
     tops: Vec<Vec<Top>>,
@@ -314,8 +314,6 @@ mod tests {
         }
     }
 
-    /// Between the folds there are two peaks, which lie so close to each other that cells whose rows the crest crosses
-    /// obliquely show one on some grids: it is told there that the crest has another, and nowhere else.
     /// Between the folds there are two peaks. Odd numbers of cells show one where the tilt is near a fold, even ones
     /// both: the crest tells of the other where one is counted, and beyond the folds it tells nothing.
     #[test]
