@@ -126,7 +126,7 @@ fn regimes(map: &RegimeMap, observable: usize) -> String {
     let mut shares: Vec<(String, f64)> = Vec::new();
     for region in picture.regions {
         let words = region.signature.map(|signature| signature.to_string());
-        let words = words.unwrap_or_else(|| "no steady state".to_owned());
+        let words = words.unwrap_or_else(|| "no steady state, or not converged".to_owned());
         match shares.iter_mut().find(|known| known.0 == words) {
             Some(known) => known.1 += region.share,
             None => shares.push((words, region.share)),

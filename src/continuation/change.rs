@@ -28,6 +28,14 @@ pub(super) struct Change {
 }
 
 impl Change {
+    /// Whether no more than one peak and one crater come or go.
+    pub(super) fn is_single(&self) -> bool {
+        let counts = |one: &Signature| [one.peaks, one.craters, one.rings];
+        let pairs = counts(&self.before).into_iter().zip(counts(&self.after));
+        let mut apart = pairs.map(|(before, after)| before.abs_diff(after));
+        apart.all(|apart| apart <= 1)
+    }
+
     /// The signature that this change alone makes of another.
     pub(super) fn step(&self, before: Signature) -> Signature {
         let Some(event) = &self.event else {
@@ -88,7 +96,33 @@ pub(super) fn changes(points: &[&Point], detector: &dyn Detector) -> Vec<Change>
             }
         }
     }
+    one_change_a_zero(&mut found);
     found
+}
+
+/// Leaves a zero to one gap alone, the one that is nearest to it: there one pair comes or goes. What an inflection that
+/// was lost was followed to in place of it is the zero of another.
+fn one_change_a_zero(changes: &mut [Change]) {
+    let claim = |change: &Change| {
+        let crossing = change.crossing()?;
+        let event = change.event.as_ref()?;
+        let zero = (change.observable, crossing.left, crossing.kind());
+        Some((zero, crossing.ends[0].place.clone(), event.above))
+    };
+    let distance = |change: &Change| {
+        let at = change.crossing().map_or(0, |crossing| crossing.left);
+        change.left.saturating_sub(at) + (at + 1).saturating_sub(change.right)
+    };
+    let claims: Vec<_> = changes
+        .iter()
+        .map(|one| (claim(one), distance(one)))
+        .collect();
+    for (change, (own, away)) in changes.iter_mut().zip(&claims) {
+        let is_taken = |(other, nearer): &(_, usize)| other == own && nearer < away;
+        if own.is_some() && claims.iter().any(is_taken) {
+            change.course = None;
+        }
+    }
 }
 
 /// The changes between two points whose signatures differ, of which a part was not seen in between; at least one.

@@ -212,7 +212,7 @@ impl<'p, 'a> Closer<'p, 'a> {
     /// seen before, and it is nearer to that than errors of order one allow. Errors that fall by the ratio r of the
     /// cells leave d / (r - 1) after a distance d, of which the next grid takes the share (r - 1) / r.
     fn is_proven(&self, row: &Located, before: &[Located]) -> bool {
-        let CellCheck::OnFinerCells { ratio } = self.work.source().subject().cell_check else {
+        let CellCheck::OnFinerCells { ratio, .. } = self.work.source().subject().cell_check else {
             return false;
         };
         let is_like = |one: &Located| {
@@ -316,7 +316,7 @@ impl<'p, 'a> Closer<'p, 'a> {
     /// How many times as many cells an axis has that is refined so many times; no end of them where it cannot be.
     fn finer(&self, times: u8) -> f64 {
         match self.work.source().subject().cell_check {
-            CellCheck::OnFinerCells { ratio } => ratio.powi(i32::from(times)),
+            CellCheck::OnFinerCells { ratio, .. } => ratio.powi(i32::from(times)),
             _ => f64::INFINITY,
         }
     }

@@ -329,7 +329,7 @@ impl Evidence<'_> {
         let is_near = times > 1.0 && times <= FARTHEST_GUESS;
         // The error is the distance to cells that were refined once less.
         let finer = match self.cell_check {
-            CellCheck::OnFinerCells { ratio } => ratio.powi(i32::from(self.refined.max(1)) - 1),
+            CellCheck::OnFinerCells { ratio, .. } => ratio.powi(i32::from(self.refined.max(1)) - 1),
             CellCheck::Impossible | CellCheck::Needless => 1.0,
         };
         is_near.then(|| (0.1 * cells * finer * times).ceil() * 10.0)

@@ -287,11 +287,36 @@ pub enum ShiftedQuantity {
     SurfaceMass(usize),
 }
 
+/// Error of a density whose solver stopped before its tolerance above which nothing is read from it: a tenth of what
+/// cells are chosen for.
+const MOST_ERROR: f64 = 1e-4;
+
 impl Finding {
     /// Code and axis. Findings that share them say the same thing with other numbers, and are told once.
     pub(crate) fn kind(&self) -> (&'static str, Option<usize>) {
         let (code, axis, _) = self.parts();
         (code, axis)
+    }
+
+    /// Says of coordinates of an axis that are measured from another origin where they lie.
+    pub(crate) fn displace(&mut self, moved: usize, by: f64) {
+        match self {
+            Self::EdgeMass { axis, range, .. } if *axis == moved => {
+                range.iter_mut().for_each(|end| *end += by);
+            }
+            Self::SurfaceOffFaces { axis, at } | Self::JumpInsideCells { axis, at }
+                if *axis == moved =>
+            {
+                *at += by;
+            }
+            _ => (),
+        }
+    }
+
+    /// Whether the solver stopped so far from the density that peaks may be of what is left. An error that is not a
+    /// number is no small one.
+    pub(crate) fn is_too_far_to_count(&self) -> bool {
+        matches!(self, Self::NotConverged { error } if error.is_nan() || *error > MOST_ERROR)
     }
 }
 

@@ -10,14 +10,15 @@ use super::doubt::{CheckedBy, Doubt};
 use super::root::Root;
 use super::span::Span;
 use super::{CellCheck, Session, SourceError};
-use crate::topology::{Detector, IndicatorKind};
+use crate::density::EstimatedDensity;
+use crate::topology::{Detector, IndicatorKind, Signature};
 
 /// Error of a value on finer cells over its distance to the value on those that it checks, see above; what order one
 /// gives where the order by which errors fall is not known yet.
 pub(super) fn share_of_distance(check: CellCheck, is_order_known: bool) -> f64 {
     match check {
-        CellCheck::OnFinerCells { ratio } if !is_order_known => (ratio - 1.0).recip().max(1.0),
-        CellCheck::OnFinerCells { ratio } => (ratio * ratio - 1.0).recip().max(1.0),
+        CellCheck::OnFinerCells { ratio, .. } if !is_order_known => (ratio - 1.0).recip().max(1.0),
+        CellCheck::OnFinerCells { ratio, .. } => (ratio * ratio - 1.0).recip().max(1.0),
         CellCheck::Impossible | CellCheck::Needless => 1.0,
     }
 }
@@ -120,6 +121,8 @@ pub(super) struct Checked<'a> {
     pub(super) kind: IndicatorKind,
     pub(super) place: &'a [f64],
     pub(super) root: Root,
+    /// What may be counted beside the zero, where the sweep's own cells cannot be trusted with it.
+    pub(super) counts: Option<[Signature; 2]>,
 }
 
 /// What was seen of an indicator at a value before. Several rows may ask for the same, and a solve from another start
@@ -164,6 +167,11 @@ pub(super) fn solve(
         return Seen::Failed(status.word().to_owned());
     }
     let density = solution.densities.get(checked.observable);
+    let is_counted = |density: &&EstimatedDensity| {
+        let counts = checked.counts.as_ref();
+        counts.is_none_or(|counts| counts.contains(&detector.detect(density).signature))
+    };
+    let density = density.filter(is_counted);
     let indicator =
         density.and_then(|density| detector.indicator(density, checked.kind, checked.place));
     indicator.map_or(Seen::Absent, |one| {
@@ -281,6 +289,7 @@ mod tests {
             kind: IndicatorKind::CURVATURE,
             place: &[0.0],
             root,
+            counts: None,
         };
         let mut solves = 0;
         let mut evaluate = |value: f64| {
@@ -291,7 +300,10 @@ mod tests {
             family: bistable(0.0, 1.0),
             observables: Vec::new(),
             measures: Vec::new(),
-            cell_check: CellCheck::OnFinerCells { ratio: 1.25 },
+            cell_check: CellCheck::OnFinerCells {
+                ratio: 1.25,
+                follows: None,
+            },
         };
         let span = Span::new(&subject, 2);
         let found = check(&mut evaluate, &checked, span, 1e-4);

@@ -81,7 +81,7 @@ impl Kinks {
             Self::None | Self::Cut => ORDER,
         };
         match check {
-            CellCheck::OnFinerCells { ratio } => ratio.powi(order),
+            CellCheck::OnFinerCells { ratio, .. } => ratio.powi(order),
             CellCheck::Impossible | CellCheck::Needless => 1.0,
         }
     }
@@ -93,7 +93,10 @@ mod tests {
 
     #[test]
     fn a_third_grid_takes_the_place_of_chance_beside_a_bend_on_faces() {
-        let check = CellCheck::OnFinerCells { ratio: 1.5 };
+        let check = CellCheck::OnFinerCells {
+            ratio: 1.5,
+            follows: None,
+        };
         let claimed = share_of_distance(check, true);
         for (kinks, first, second, fall) in [
             (Kinks::None, 1.0, 1.0, 5),

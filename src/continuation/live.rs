@@ -121,7 +121,7 @@ impl<'a> Live<'a> {
             return 0.0;
         };
         match (by, subject.cell_check) {
-            (CheckedBy::FinerCells(times @ 2..), CellCheck::OnFinerCells { ratio }) => {
+            (CheckedBy::FinerCells(times @ 2..), CellCheck::OnFinerCells { ratio, .. }) => {
                 work_of_factors(
                     ratio.powi(i32::from(times)),
                     subject.family.model().axes.len(),

@@ -96,18 +96,27 @@ pub(super) fn by_indicator(
     let density = &a.densities[change.observable];
     // What follows from the equations: no grid takes part.
     let depends_on_cells = !crossing.ends.iter().all(Indicator::is_free_of_cells);
+    // A jump inside of cells makes them count what they like: those that move with it must count what the sweep does.
+    let is_followed = matches!(
+        subject.cell_check,
+        CellCheck::OnFinerCells {
+            follows: Some(_),
+            ..
+        }
+    );
     let checked = Checked {
         observable: change.observable,
         kind: crossing.kind(),
         place: &crossing.ends[0].place,
         root: zero,
+        counts: is_followed.then_some([change.before, change.after]),
     };
     let on_finer = depends_on_cells.then(|| {
         let is_forced = subject.family.model().phase_axis().is_some();
         // Where cells are wide, and on those that follow them in a closer look, errors may fall by any order. Along
         // what a forcing carries to and fro cells are always wide; there, schemes say how far off it is.
         let is_wide = [a, b].into_iter().any(has_wide_cells);
-        let is_order_known = is_forced || !(options.is_closer || is_wide);
+        let is_order_known = is_forced || !(options.is_closer || is_wide || is_followed);
         let share = share_of_distance(subject.cell_check, is_order_known);
         let cells = Cells {
             density,
@@ -115,6 +124,7 @@ pub(super) fn by_indicator(
             share,
             is_forced,
             is_wide: is_wide && !is_forced,
+            is_followed,
         };
         on_finer_cells(&mut zero, &checked, cells, options, checks)
     });
@@ -141,6 +151,7 @@ pub(super) fn by_indicator(
         [a, b],
         (subject, change.observable),
         depends_on_cells,
+        refined > 1 && change.is_single(),
     ));
     let evidence = Evidence {
         check: on_finer
@@ -205,6 +216,8 @@ struct Cells<'a> {
     is_forced: bool,
     /// Whether they are so wide that errors may fall by any order, and two grids agree by chance.
     is_wide: bool,
+    /// Whether finer ones move with what lies inside of these: where in a cell that is here is chance.
+    is_followed: bool,
 }
 
 /// What finer cells have said of a zero.
@@ -278,7 +291,7 @@ fn on_finer_cells(
         }
         let ErrorParts { grid, .. } = zero.error;
         let is_known = zero.error.total() <= options.tolerance || grid < 0.5 * zero.error.total();
-        let is_by_chance = cells.is_wide && options.is_closer && times == 1;
+        let is_by_chance = times == 1 && (cells.is_wide && options.is_closer || cells.is_followed);
         if is_known && untold.is_none() && !is_by_chance {
             break;
         }
@@ -292,7 +305,7 @@ fn on_finer_cells(
 /// Whether distances between values on finer and finer cells fall as order one has it, or faster. Two grids tell
 /// nothing of that.
 fn are_settled(distances: &[f64], check: CellCheck) -> bool {
-    let CellCheck::OnFinerCells { ratio } = check else {
+    let CellCheck::OnFinerCells { ratio, .. } = check else {
         return false;
     };
     let mut pairs = distances.windows(2);
@@ -305,11 +318,13 @@ pub(super) fn has_wide_cells(point: &Point) -> bool {
 }
 
 /// What speaks against the densities on either side of a zero. What holds of one that leaks away, or has not converged,
-/// is not what holds of the steady state.
+/// is not what holds of the steady state. A jump of the drift inside of cells speaks no more against a zero that two
+/// grids have which move with it.
 fn against(
     pair: [&Point; 2],
     (subject, observable): (&Subject, usize),
     depends_on_cells: bool,
+    is_followed: bool,
 ) -> Vec<Doubt> {
     let ends = pair.iter().find_map(|point| {
         let status = point.report.status;
@@ -330,7 +345,15 @@ fn against(
     let (jumps, modes): (Vec<Doubt>, Vec<Doubt>) = blurs
         .into_iter()
         .partition(|doubt| matches!(doubt, Doubt::JumpInsideCells(..)));
-    let jumps = jumps.into_iter().filter(|_| depends_on_cells);
+    let is_followed = |axis: usize| match subject.cell_check {
+        CellCheck::OnFinerCells { follows, .. } => is_followed && follows == Some(axis),
+        _ => false,
+    };
+    let is_open =
+        |doubt: &Doubt| !matches!(doubt, Doubt::JumpInsideCells(axis, _) if is_followed(*axis));
+    let jumps = jumps
+        .into_iter()
+        .filter(|jump| depends_on_cells && is_open(jump));
     ends.into_iter()
         .chain(torn)
         .chain(modes)

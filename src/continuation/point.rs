@@ -75,11 +75,10 @@ impl Point {
     /// Whether the solver came near enough to its tolerance for peaks to be no doing of what is left, as where wells
     /// exchange mass more slowly than the digits of rates can tell. An error that is not a number is no small one.
     fn is_readable(&self) -> bool {
-        let mut findings = self.report.findings.iter();
-        findings.all(|one| !matches!(one, Finding::NotConverged { error } if error.is_nan() || *error > MOST_ERROR))
+        !self
+            .report
+            .findings
+            .iter()
+            .any(Finding::is_too_far_to_count)
     }
 }
-
-/// Error of a density whose solver stopped before its tolerance above which nothing is read from it: a tenth of what
-/// cells are chosen for.
-const MOST_ERROR: f64 = 1e-4;

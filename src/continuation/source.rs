@@ -53,6 +53,8 @@ pub enum CellCheck {
     OnFinerCells {
         /// Cells of an axis there over those here, above one; the smallest of all axes.
         ratio: f64,
+        /// The axis along which they move with the places at which the drift jumps, which lie inside cells here.
+        follows: Option<usize>,
     },
     /// It cannot: the cells move what is found, and finer ones would bring a noise of their own.
     Impossible,

@@ -194,6 +194,22 @@ impl EstimatedDensity {
             && (self.truncation.change.is_empty() || fits(&self.truncation.change))
     }
 
+    /// Moves the density along an axis of the system: what lies at x lies at x + `by` then.
+    pub(crate) fn displace(&mut self, axis: usize, by: f64) {
+        let place = self.observable.axes().iter().position(|&one| one == axis);
+        let Some(place) = place else {
+            return;
+        };
+        self.density.axes[place] = self.density.axes[place].displaced(by);
+        if let Some(centre) = &mut self.structure.centre {
+            centre[place] += by;
+        }
+        let kinks = self.structure.kinks.iter_mut();
+        for kink in kinks.filter(|kink| kink.axis == place) {
+            kink.at += by;
+        }
+    }
+
     /// Errors as they are stated, of each value: those by which neighbours are told apart, and what the ends of the
     /// ranges may have changed.
     pub fn stated_errors(&self) -> Vec<f64> {

@@ -1,9 +1,8 @@
 //! Which method, and what the settings of all methods share. Each method's settings and defaults stand in its wing.
 
 use crate::continuation::CellCheck;
-use crate::space::CellSpace;
 
-use super::{GeneratorMethodOptions, MonteCarloOptions, SgcmOptions};
+use super::{GeneratorMethodOptions, MonteCarloOptions, Problem, SgcmOptions};
 
 /// A method with its settings.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,9 +26,9 @@ impl MethodOptions {
     pub(crate) const KINDS: [&'static str; 3] = ["generator", "sgcm", "monte-carlo"];
 
     /// Whether what the cells of this space do to the densities can be checked.
-    pub(crate) fn cell_check(&self, space: &CellSpace) -> CellCheck {
+    pub(crate) fn cell_check(&self, problem: &Problem) -> CellCheck {
         match self {
-            Self::Generator(_) => GeneratorMethodOptions::cell_check(space),
+            Self::Generator(_) => GeneratorMethodOptions::cell_check(problem),
             Self::Sgcm(_) => SgcmOptions::CELL_CHECK,
             Self::MonteCarlo(_) => MonteCarloOptions::CELL_CHECK,
         }

@@ -166,6 +166,16 @@ impl Problem {
         problem
     }
 
+    /// The same seen from where the first switching surface across an axis lies.
+    ///
+    /// # Errors
+    /// [`MethodError::System`].
+    pub(super) fn following_surface(mut self, axis: usize) -> Result<Self, MethodError> {
+        self.subject.family = self.subject.family.following_surface(axis)?;
+        self.fixed = Fixed::default();
+        Ok(self)
+    }
+
     /// The same without derived measures.
     #[must_use]
     pub(crate) fn without_measures(mut self) -> Self {

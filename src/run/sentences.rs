@@ -170,9 +170,16 @@ fn cells_in_words(family: &Family, finding: &Finding) -> Option<String> {
 /// How the solver fared, and the trajectories.
 fn solve_in_words(family: &Family, finding: &Finding) -> String {
     match *finding {
-        Finding::NotConverged { error } => format!(
-            "the solver stopped before its tolerance, with an estimated error of {error:.1e}"
-        ),
+        Finding::NotConverged { error } => {
+            let uncounted = if finding.is_too_far_to_count() {
+                ": no peaks are counted in such a density"
+            } else {
+                ""
+            };
+            format!(
+                "the solver stopped before its tolerance, with an estimated error of {error:.1e}{uncounted}"
+            )
+        }
         Finding::SeveralClasses { ref classes } => {
             let named = classes.iter().take(CLASSES_NAMED).map(class_in_words);
             let mut words = named.collect::<Vec<_>>().join("; ");

@@ -276,6 +276,7 @@ impl Axis {
     }
 }
 
+mod displaced;
 mod even;
 mod faces;
 mod modes;

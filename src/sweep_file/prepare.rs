@@ -74,7 +74,7 @@ impl Settings {
             .map_err(|diagnostic| self.refuse(*diagnostic))?;
         let problem = Problem::watching(self.family.clone(), space, self.observables.clone(), bins)
             .map(|problem| {
-                let check = self.method.chosen().cell_check(problem.space());
+                let check = self.method.chosen().cell_check(&problem);
                 let measures = self.measures.as_deref().unwrap_or_default();
                 problem.measuring(measures).checked_by(check)
             })
@@ -125,7 +125,7 @@ impl Settings {
     ) -> Result<Vec<Arc<dyn System>>, Report> {
         let corners = self.corners().into_iter();
         let model = self.family.model().clone();
-        let system = |values| self.family.within_walls(model.system(&values));
+        let system = |values| self.family.framed(model.system(&values));
         let ends: Vec<Arc<dyn System>> = corners.map(system).collect();
         let ranges = self.find_ranges(&ends, cancellation)?;
         for (axis, range) in self.axes.iter_mut().zip(ranges) {

@@ -168,15 +168,19 @@ fn below(path: &[&str]) -> Vec<String> {
     names
 }
 
-/// Names that are tried for what is said in another way, and how it is said.
-const SAID_ELSEWHERE: [(&[&str], &str); 2] = [
+/// Names that are tried at the top or beside the system for what is said in another way, and how it is said.
+const SAID_ELSEWHERE: [(&[&str], &str); 3] = [
     (
         &["angle", "angles", "periodic", "wrap"],
         "an angle is an axis with the bound \"periodic\", as in `[system.bounds]` with `theta = \"periodic\"` (docs/angles.md)",
     ),
     (
-        &["forcing", "force", "drive", "driving", "excitation"],
+        &["forcing", "force", "drive", "driving"],
         "a force that depends on time is written into the equations with `t`, as in `f cos(omega t)` (docs/forcing.md)",
+    ),
+    (
+        &["definition", "definitions", "functions"],
+        "names for parts of formulas stand in `[system.define]`, as in `r = \"x^2 + y^2\"` (docs/formulas.md)",
     ),
 ];
 
@@ -186,10 +190,9 @@ fn unknown_key(entry: &Entry, path: &[&str]) -> Diagnostic {
     let plain: Vec<&str> = names.iter().map(|name| name.trim_matches('`')).collect();
     let title = format!("unknown key `{}`", quotable(&path.join(".")));
     let diagnostic = Diagnostic::new(title).at(&entry.key_place, "not a key of a sweep file");
-    if let Some((_, remedy)) = SAID_ELSEWHERE
-        .iter()
-        .find(|one| one.0.contains(&entry.key.as_str()))
-    {
+    let of_the_system = matches!(parent, [] | ["system" | "cells" | "sweep", ..]);
+    let mut elsewhere = SAID_ELSEWHERE.iter().filter(|_| of_the_system);
+    if let Some((_, remedy)) = elsewhere.find(|one| one.0.contains(&entry.key.as_str())) {
         return diagnostic.allowed(names.join(", ")).remedy(*remedy);
     }
     // The very name of a table says more than likeness does.

@@ -5,6 +5,7 @@ mod deviations;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::displaced::Displaced;
 use super::{
     AtPhase, Enclosed, FieldQuestion, Model, ParameterValues, Path, Quantity, Questions, System,
     SystemError,
@@ -30,10 +31,27 @@ pub struct Family {
     values: ParameterValues,
     path: Path,
     walls: BTreeMap<usize, (f64, f64)>,
+    origin: Option<MovingOrigin>,
     /// Numbered on from the axes.
     quantities: Vec<Arc<Quantity>>,
     /// What is asked of the systems beside their densities.
     pub questions: Questions,
+}
+
+/// What the coordinate of an axis is measured from.
+#[derive(Debug, Clone, Copy)]
+struct MovingOrigin {
+    axis: usize,
+    /// Where the first switching surface across the axis lies, in that coordinate.
+    at: f64,
+}
+
+impl MovingOrigin {
+    /// Where the origin lies for a system of the model.
+    fn of(self, system: &dyn System) -> f64 {
+        let surface = system.facts().surfaces_on(self.axis).next();
+        surface.map_or(0.0, |at| at - self.at)
+    }
 }
 
 impl Family {
@@ -58,6 +76,7 @@ impl Family {
             values,
             path,
             walls: BTreeMap::new(),
+            origin: None,
             quantities: Vec::new(),
             questions: Questions::default(),
         };
@@ -252,15 +271,46 @@ impl Family {
     /// # Errors
     /// [`SystemError::OutOfRange`].
     pub fn at(&self, coordinate: f64) -> Result<Arc<dyn System>, SystemError> {
-        Ok(self.within_walls(self.model.system(&self.values_at(coordinate)?)))
+        Ok(self.framed(self.model.system(&self.values_at(coordinate)?)))
     }
 
-    /// A system of the family's model, with the walls that reflect.
-    pub(crate) fn within_walls(&self, system: Arc<dyn System>) -> Arc<dyn System> {
-        if self.walls.is_empty() {
-            return system;
+    /// A system of the family's model, with the walls that reflect, seen from the family's origin.
+    pub(crate) fn framed(&self, mut system: Arc<dyn System>) -> Arc<dyn System> {
+        if !self.walls.is_empty() {
+            system = Arc::new(Enclosed::reflecting(system, &self.walls));
         }
-        Arc::new(Enclosed::reflecting(system, &self.walls))
+        let Some(origin) = self.origin else {
+            return system;
+        };
+        let by = origin.of(system.as_ref());
+        Arc::new(Displaced::new(system, origin.axis, by))
+    }
+
+    /// The family in the coordinate of an axis in which the first switching surface across it stays where it is in the
+    /// middle of the path: u = x - (s(θ) - s(middle)) with the place s of the surface.
+    ///
+    /// # Errors
+    /// [`SystemError::OutOfRange`].
+    pub(crate) fn following_surface(mut self, axis: usize) -> Result<Self, SystemError> {
+        self.origin = None;
+        let (from, to) = self.ends();
+        let middle = self.at(0.5 * (from + to))?;
+        let at = middle.facts().surfaces_on(axis).next();
+        self.origin = at.map(|at| MovingOrigin { axis, at });
+        Ok(self)
+    }
+
+    /// The axis whose coordinate is measured from an origin that moves, and where the origin lies at a coordinate of the
+    /// path; `None` where none moves.
+    ///
+    /// # Errors
+    /// [`SystemError::OutOfRange`].
+    pub(crate) fn origin_at(&self, coordinate: f64) -> Result<Option<(usize, f64)>, SystemError> {
+        let Some(origin) = self.origin else {
+            return Ok(None);
+        };
+        let system = self.model.system(&self.values_at(coordinate)?);
+        Ok(Some((origin.axis, origin.of(system.as_ref()))))
     }
 
     /// The systems at both ends and in the middle: what is chosen once for a whole sweep is chosen for these.

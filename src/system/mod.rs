@@ -27,6 +27,7 @@ mod bistable;
 mod coloured;
 pub mod contract;
 mod description;
+mod displaced;
 mod enclosed;
 mod ends;
 mod facts;

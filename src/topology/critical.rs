@@ -10,8 +10,8 @@ use crate::density::{EstimatedDensity, WIGGLE};
 
 /// Most steps of Newton's method.
 const MOST_STEPS: usize = 12;
-/// Longest way from the centre of the candidate's cell, in cells, or in the longest of its steps. Along a trench that
-/// lies across the cells the lowest of them may be several cells away from the lowest point.
+/// Longest way from the centre of the candidate's cell, in cells, and least number of steps on the longest way. Along a
+/// trench that lies across the cells the lowest of them may be several cells away from the lowest point.
 const FARTHEST: f64 = 6.0;
 /// The same as a share of the range, where a crest is so level that its highest cell may be anywhere.
 const MOST_OF_RANGE: f64 = 0.1;
@@ -70,7 +70,7 @@ impl Critical {
         let mut reach = None;
         for _ in 0..MOST_STEPS {
             let jet = field.stencil(&position, 0)?.jet(values);
-            let reach = reach.get_or_insert_with(|| reach_from(field, centre, &jet));
+            let reach = reach.get_or_insert_with(|| reach_from(field, centre, &jet, &pinned));
             let rough = || Some(field.stencil(&position, 1)?.jet(values));
             let step = step(&jet, &rough, kind, &pinned);
             let mut longest: f64 = 0.0;
@@ -254,15 +254,16 @@ fn holds(field: &Field<'_>, at: &[f64], k: usize, kind: FeatureKind, values: &[f
 
 /// How far along each axis, in its units, a critical point may lie from the cell that shows it. Along a crest or a
 /// trench that crosses cells obliquely, their values wave by κh²/8, with the curvature κ across it and the width h of
-/// cells there: as much as the crest itself changes over h √(κ/κ') / 2, with the curvature κ' along it.
-fn reach_from(field: &Field<'_>, centre: &[f64], jet: &Jet) -> [f64; 2] {
+/// cells there: as much as the crest itself changes over h √(κ/κ') / 2, with the curvature κ' along it. A plane with a
+/// jump of the derivative holds a point on a line of cells, whose values do not wave.
+fn reach_from(field: &Field<'_>, centre: &[f64], jet: &Jet, pinned: &[bool]) -> [f64; 2] {
     let cells: Vec<f64> = (0..centre.len())
         .map(|k| field.cell_width(k, centre[k]))
         .collect();
     let mut reach = [0, 1].map(|k| FARTHEST * cells.get(k).copied().unwrap_or_default());
-    let [_, _] = cells[..] else {
+    if pinned != [false, false] {
         return reach;
-    };
+    }
     let mut principal = jet.principal();
     principal.sort_by(|a, b| a.value.abs().total_cmp(&b.value.abs()));
     let [along, across] = principal;

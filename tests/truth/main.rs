@@ -14,6 +14,7 @@ mod hard_cases;
 mod internal_states;
 mod located;
 mod location;
+mod moving_jump;
 mod natural_ends;
 mod passage_fields;
 mod passage_starts;

@@ -164,7 +164,7 @@ fn unlike_ends(result: &SweepResult, ends: [Option<&Point>; 2]) -> String {
             .any(|look| look.observable == **observable);
         is_looked_at
             && first.signature != last.signature
-            && result.bifurcations().find(is_of).is_none()
+            && !result.bifurcations().any(|row| is_of(&row))
     });
     let names: Vec<String> = unlike
         .map(|(observable, _)| observable.name(&result.subject.family))

@@ -12,7 +12,10 @@ fn the_first_doubt_decides_status_and_reason() {
             check: None,
             densities: Vec::new(),
             unchecked: None,
-            cell_check: CellCheck::OnFinerCells { ratio: 1.5 },
+            cell_check: CellCheck::OnFinerCells {
+                ratio: 1.5,
+                follows: None,
+            },
             refined: 1,
             is_diffused: false,
             parts: ErrorParts::default(),

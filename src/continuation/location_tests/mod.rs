@@ -40,7 +40,10 @@ impl<F: Formula> Exact<F> {
                 _ => Observable::Joint(0, 1),
             }],
             measures: Vec::new(),
-            cell_check: CellCheck::OnFinerCells { ratio: 1.25 },
+            cell_check: CellCheck::OnFinerCells {
+                ratio: 1.25,
+                follows: None,
+            },
         };
         Self {
             subject,

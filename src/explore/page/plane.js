@@ -15,7 +15,7 @@ const pixelOf = (colour) => new Uint32Array(new Uint8Array([...channels(colour),
 
 const groundOf = (regions, kind, theme) =>
   regions.kinds[kind] ? mixed(GROUNDS[kind % GROUNDS.length], theme.paper, TINT) : theme.empty;
-const kindWords = (words) => words || "no steady state";
+const kindWords = (words) => words || "no steady state, or not converged";
 
 /** Indicators of curves, in the order in which they were followed: each has a line of its own. */
 const methodsOf = (found) => [...new Set(found.curves.map(({ method }) => method))];

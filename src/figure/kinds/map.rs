@@ -111,7 +111,10 @@ impl Ground {
 }
 
 fn words(signature: Option<Signature>) -> String {
-    signature.map_or_else(|| "no steady state".to_owned(), |one| one.to_string())
+    signature.map_or_else(
+        || "no steady state, or not converged".to_owned(),
+        |one| one.to_string(),
+    )
 }
 
 impl Scene<'_> {

@@ -6,6 +6,7 @@ use super::session::GeneratorSession;
 use super::source::{GeneratorSource, METHOD};
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, Session, Solution, SourceError, Subject, Want};
+use crate::method::MethodError;
 
 impl DensitySource for GeneratorSource {
     fn method(&self) -> &'static str {
@@ -46,7 +47,18 @@ impl DensitySource for GeneratorSource {
 
 impl Session for GeneratorSession {
     fn solve(&mut self, value: f64) -> Result<Solution<'_>, SourceError> {
-        Ok(self.solve_from_nearest(value)?)
+        let origin = self.source.problem.family().origin_at(value);
+        let origin = origin.map_err(MethodError::from)?;
+        let mut solution = self.solve_from_nearest(value)?;
+        if let Some((axis, at)) = origin {
+            for density in &mut solution.densities {
+                density.displace(axis, at);
+            }
+            for finding in &mut solution.report.findings {
+                finding.displace(axis, at);
+            }
+        }
+        Ok(solution)
     }
 
     #[cfg(feature = "serde")]

@@ -2,7 +2,9 @@
 
 use crate::continuation::CellCheck;
 use crate::generator::AdvectiveScheme;
+use crate::method::Problem;
 use crate::method::report::ESCAPE_LIMIT;
+use crate::method::structure::{MovingSurfaces, moving_surfaces};
 use crate::space::{Axis, CellSpace};
 
 /// Settings of the generator method.
@@ -24,13 +26,15 @@ pub struct GeneratorMethodOptions {
 
 impl GeneratorMethodOptions {
     /// On finer cells: a scheme of high order shows there what the cells of this space do.
-    pub(crate) fn cell_check(space: &CellSpace) -> CellCheck {
+    pub(crate) fn cell_check(problem: &Problem) -> CellCheck {
+        let space = problem.space();
         let finer = finer_axes(space);
         let pairs = finer.iter().zip(space.axes());
         let cut = pairs.filter(|(_, axis)| !axis.is_modes());
         let ratios = cut.map(|(finer, axis)| finer.count() as f64 / axis.count() as f64);
         CellCheck::OnFinerCells {
             ratio: ratios.fold(FINER[0], f64::min),
+            follows: followed_surfaces(problem).map(|surfaces| surfaces.axis),
         }
     }
 }
@@ -44,6 +48,16 @@ pub(super) fn finer_axes(space: &CellSpace) -> Vec<Axis> {
     let factor = finer_factor(space);
     let axes = space.axes().iter();
     axes.map(|axis| axis.refined(factor)).collect()
+}
+
+/// The switching surfaces with which finer cells move: quantities are formulas of coordinates that stay where they are.
+pub(super) fn followed_surfaces(problem: &Problem) -> Option<MovingSurfaces> {
+    let space = problem.space();
+    let mut axes = problem.observables().iter().flat_map(|one| one.axes());
+    if space.axes().len() < 2 || axes.any(|axis| axis >= space.axes().len()) {
+        return None;
+    }
+    moving_surfaces(&problem.family().along().ok()?, space)
 }
 
 /// Which of the factors is meant.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::GeneratorMethodOptions;
-use super::options::{finer_axes, finer_factor};
+use super::options::{finer_axes, finer_factor, followed_surfaces};
 use crate::cancellation::Cancellation;
 use crate::continuation::Want;
 use crate::generator::{
@@ -14,7 +14,7 @@ use crate::method::problem::Maps;
 use crate::method::structure::{all_kinked_surfaces, closed_ends, fixed_surfaces, natural_ends};
 use crate::method::watched::Masses;
 use crate::method::{MethodError, Problem, has_densities};
-use crate::space::CellSpace;
+use crate::space::{Axis, CellSpace};
 use crate::stationary::generator::{RateOptions, RateSolver};
 use crate::system::{Enclosed, Family, ParameterValues, SwitchingSurface, System, SystemError};
 
@@ -38,7 +38,7 @@ impl Varied {
     pub(super) fn at(&self, value: f64) -> Result<Arc<dyn System>, SystemError> {
         let model = self.family.model();
         let values = model.with(&self.values, &self.name, value)?;
-        Ok(self.family.within_walls(model.system(&values)))
+        Ok(self.family.framed(model.system(&values)))
     }
 }
 
@@ -75,7 +75,7 @@ impl GeneratorSource {
         let (systems, space) = (problem.family().along()?, problem.space());
         has_densities(problem)?;
         Ok(Self {
-            problem: problem.checked_by(GeneratorMethodOptions::cell_check(space)),
+            problem: problem.checked_by(GeneratorMethodOptions::cell_check(problem)),
             options: options.clone(),
             closed_ends: closed_ends(&systems, space),
             natural_ends: natural_ends(&systems, space),
@@ -99,16 +99,25 @@ impl GeneratorSource {
         Ok(Arc::new(Enclosed::new(system, &ranges)))
     }
 
-    /// The same on finer cells.
+    /// The same on finer cells, which move with the places at which the drift is not smooth where densities of states
+    /// are all that is wanted: what is not smooth inside a cell is not seen there, however small the cell.
     pub(super) fn refined(&self, want: &Want) -> Result<Self, MethodError> {
         let space = self.problem.space();
         let systems = self.problem.family().along()?;
         let finer = finer_axes(space).into_iter().enumerate();
-        // What is not smooth inside a cell is not seen there, however small the cell.
         let finer =
             finer.map(|(axis, cells)| cells.with_faces_on(&fixed_surfaces(&systems, axis, space)));
-        let finer = CellSpace::new(finer.collect())?;
-        let problem = self.problem.wanting(want).on(finer)?;
+        let mut finer: Vec<Axis> = finer.collect();
+        let mut problem = self.problem.wanting(want);
+        let followed = followed_surfaces(&self.problem).filter(|_| want.measures.is_empty());
+        if let Some(surfaces) = followed {
+            let cells = &mut finer[surfaces.axis];
+            let [least, most] = surfaces.displacements;
+            let range = (cells.from() - most, cells.to() - least);
+            *cells = cells.about(range, &surfaces.places)?;
+            problem = problem.following_surface(surfaces.axis)?;
+        }
+        let problem = problem.on(CellSpace::new(finer)?)?;
         let problem = problem.with_finer_bins(finer_factor(space));
         Ok(Self {
             checks: !want.errors,

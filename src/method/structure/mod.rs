@@ -1,6 +1,7 @@
 //! What a system's equations imply for a density that is watched: its centre of symmetry, and its kinks.
 
 mod kink;
+mod moving;
 mod smoothness;
 mod undriven;
 
@@ -10,6 +11,7 @@ use crate::density::{Kink, Observable, Structure};
 use crate::space::CellSpace;
 use crate::system::{self, SwitchingSurface, System, proved_symmetry, symmetry_over_a_period};
 use kink::kink;
+pub(super) use moving::{MovingSurfaces, moving_surfaces};
 use smoothness::{Break, break_at};
 
 /// The switching surfaces with a kink of the density somewhere along a sweep, given systems along it. Where the drift
