@@ -47,6 +47,9 @@ pub(super) struct AxisGeometry {
     pub(super) reach: usize,
     /// Inner faces on which a derivative of the density jumps, past which no stencil of a flux reaches.
     pub(super) breaks: Vec<usize>,
+    /// Of each face of an axis with noise, whether its stencil reaches across a switching surface: there the density has
+    /// a kink, and its product with the fitted exponential has none.
+    pub(super) is_across: Vec<bool>,
     /// Of an axis of modes, what tests them.
     pub(super) modes: Option<ModeAxis>,
 }
@@ -68,6 +71,11 @@ impl AxisGeometry {
             true => Vec::new(),
             false => breaks(system, index, space),
         };
+        let kinks = match noisy && !axis.is_modes() {
+            true => surface_faces(system, index, axis),
+            false => Vec::new(),
+        };
+        let is_across = |face: usize| kinks.iter().any(|kink| kink.abs_diff(face) < REACH);
         let end = |wall: bool| if wall { End::Wall } else { End::Open };
         let ranges = space.ranges();
         Self {
@@ -86,6 +94,7 @@ impl AxisGeometry {
                 (false, false) => scheme.reach(),
             },
             breaks,
+            is_across: (0..=count).map(is_across).collect(),
             modes: ModeAxis::new(axis),
         }
     }

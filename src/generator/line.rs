@@ -148,14 +148,43 @@ impl Line {
             return flux;
         }
         let speed = 0.5 * (self.speed[face - 1] + self.speed[face]);
+        let is_across = axis.is_across[face] && stencil.corrected;
         for (k, weight) in flux.iter_mut().enumerate() {
             let (central, dissipation) = (stencil.central[k], stencil.dissipation[k]);
             if central != 0.0 || dissipation != 0.0 {
                 let cell = face + k - REACH;
                 *weight = (central * self.advected[cell] - speed * dissipation) / axis.widths[cell];
+                if is_across {
+                    *weight *= (self.potential[cell] - self.face_potential[face]).exp();
+                }
             }
         }
+        if is_across {
+            self.add_bend(axis, face, &mut flux);
+        }
         flux
+    }
+
+    /// Where a stencil reaches across a switching surface, the drift times the density is reconstructed as its product
+    /// with e^φ, which has no kink. What a difference of fluxes wants is f - f''/24 of the flux itself: what second
+    /// differences of f over faces are more than those of the product is added here.
+    fn add_bend(&self, axis: &AxisGeometry, face: usize, flux: &mut Window) {
+        for beside in [face - 1, face + 1] {
+            let change = self.face_potential[beside] - self.face_potential[face];
+            let share = change.exp_m1() / 24.0;
+            for (offset, weight) in [(-2_isize, -1.0), (-1, 9.0), (0, 9.0), (1, -1.0)] {
+                let Some(cell) = beside
+                    .checked_add_signed(offset)
+                    .filter(|&one| one < axis.count())
+                else {
+                    continue;
+                };
+                let place = cell + REACH - face;
+                let value = (self.potential[cell] - self.face_potential[beside]).exp();
+                let value = value * self.advected[cell] / axis.widths[cell];
+                flux[place] += share * weight / 16.0 * value;
+            }
+        }
     }
 
     /// D p e^{φ} of a cell, per unknown, relative to the potential of a face.

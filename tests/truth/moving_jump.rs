@@ -118,7 +118,7 @@ fn finer_cells_have_a_face_on_the_jump_and_their_densities_lie_where_the_sweep_h
         let stated = of_y.stated_errors().into_iter().zip(widths);
         let stated: f64 = 0.5 * stated.map(|(error, width)| error * width).sum::<f64>();
         assert!(
-            apart < 3.0 * stated && stated < 1e-3,
+            apart < stated && stated < 1e-4,
             "{theta}: {apart:e} {stated:e}"
         );
     }
