@@ -9,7 +9,7 @@
 //!
 //! At a switching surface r jumps and φ has a kink. Density and flux are continuous there, hence D p e^{φ} is
 //! smooth to first order and its stencils may cross the surface: the kink of the density sits in φ, exactly,
-//! and the scheme is the same at every friction level. (Stencils closed on either side, with a penalty on the
+//! and the scheme is the same at every friction level. The advected part takes p e^{φ} there too. (Stencils closed on either side, with a penalty on the
 //! jump, were measured to be no better on a graded axis and half as accurate on a uniform one.)
 
 use super::geometry::{AxisGeometry, End};

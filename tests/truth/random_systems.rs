@@ -10,6 +10,7 @@
 //! prints the tables of docs/location.md. A few systems are run always. With `OTHER_SEEDS=420000` in the environment
 //! other systems of the same families are drawn.
 
+mod belts;
 mod formulas;
 mod gibbs;
 mod places;

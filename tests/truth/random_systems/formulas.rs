@@ -123,8 +123,14 @@ impl Formula {
         )
     }
 
+    /// The range of the density, and where it changes there.
+    pub(super) fn range_and_turns(&self) -> ((f64, f64), Vec<f64>) {
+        let range = self.range();
+        (range, self.turns(range))
+    }
+
     pub(super) fn case(self, cells: usize) -> Case {
-        let (from, to) = self.range();
+        let ((from, to), truths) = self.range_and_turns();
         let model = TypedModel::new("random", "A random system", ["x"])
             .with_equation("x", &self.drift)
             .with_noise("x", [self.noise.clone()])
@@ -132,7 +138,6 @@ impl Formula {
             .with_parameters(["theta"])
             .build()
             .unwrap();
-        let truths = self.turns((from, to));
         Case {
             family: self.family,
             words: format!(
