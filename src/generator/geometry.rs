@@ -47,8 +47,8 @@ pub(super) struct AxisGeometry {
     pub(super) reach: usize,
     /// Inner faces on which a derivative of the density jumps, past which no stencil of a flux reaches.
     pub(super) breaks: Vec<usize>,
-    /// Of each face of an axis with noise, whether its stencil reaches across a switching surface: there the density has
-    /// a kink, and its product with the fitted exponential has none.
+    /// Of each face of an axis with noise, whether its stencil reaches across a switching surface: there the density
+    /// has a kink, and its product with the fitted exponential has none.
     pub(super) is_across: Vec<bool>,
     /// Of an axis of modes, what tests them.
     pub(super) modes: Option<ModeAxis>,

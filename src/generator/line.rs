@@ -148,41 +148,60 @@ impl Line {
             return flux;
         }
         let speed = 0.5 * (self.speed[face - 1] + self.speed[face]);
-        let is_across = axis.is_across[face] && stencil.corrected;
+        let share = match axis.is_across[face] && stencil.corrected {
+            true => self.share_of_fit(axis, face),
+            false => 0.0,
+        };
         for (k, weight) in flux.iter_mut().enumerate() {
             let (central, dissipation) = (stencil.central[k], stencil.dissipation[k]);
             if central != 0.0 || dissipation != 0.0 {
                 let cell = face + k - REACH;
-                *weight = (central * self.advected[cell] - speed * dissipation) / axis.widths[cell];
-                if is_across {
-                    *weight *= (self.potential[cell] - self.face_potential[face]).exp();
+                let mut carried = central * self.advected[cell];
+                if share > 0.0 {
+                    carried *= (share * (self.potential[cell] - self.face_potential[face])).exp();
                 }
+                *weight = (carried - speed * dissipation) / axis.widths[cell];
             }
         }
-        if is_across {
-            self.add_bend(axis, face, &mut flux);
+        if share > 0.0 {
+            self.add_bend(axis, (face, share), &mut flux);
         }
         flux
     }
 
+    /// The share of φ with which the advected density is multiplied where a stencil reaches across a switching surface:
+    /// all of it as long as neither φ nor what is advected changes the density so much over a cell that a fit is held
+    /// back, less as they change it more, and nothing at the most that is fitted. There the product is no smoother than
+    /// the density.
+    fn share_of_fit(&self, axis: &AxisGeometry, face: usize) -> f64 {
+        let cells = face.saturating_sub(REACH)..(face + REACH).min(axis.count());
+        let changes = cells.map(|cell| {
+            let fitted = self.potential[cell] - self.face_potential[face];
+            let advected = self.advected[cell] * axis.widths[cell];
+            let advected = advected / self.diffusion[cell].max(f64::MIN_POSITIVE);
+            (fitted.abs() / (REACH as f64 - 0.5)).max(advected.abs())
+        });
+        let a_cell = changes.fold(0.0, f64::max);
+        let free = 0.5 * FITTED_LIMIT;
+        let held = ((a_cell - free) / (FITTED_LIMIT - free)).clamp(0.0, 1.0);
+        1.0 - held * held * (3.0 - 2.0 * held)
+    }
+
     /// Where a stencil reaches across a switching surface, the drift times the density is reconstructed as its product
-    /// with e^φ, which has no kink. What a difference of fluxes wants is f - f''/24 of the flux itself: what second
-    /// differences of f over faces are more than those of the product is added here.
-    fn add_bend(&self, axis: &AxisGeometry, face: usize, flux: &mut Window) {
+    /// with e^φ (or a share of φ), which has no kink. What a difference of fluxes wants is f - f''/24 of the flux f
+    /// itself: what second differences of f over faces are more than those of the product is added here.
+    fn add_bend(&self, axis: &AxisGeometry, (face, share): (usize, f64), flux: &mut Window) {
         for beside in [face - 1, face + 1] {
-            let change = self.face_potential[beside] - self.face_potential[face];
-            let share = change.exp_m1() / 24.0;
+            let change = share * (self.face_potential[beside] - self.face_potential[face]);
+            let missing = change.exp_m1() / 24.0;
             for (offset, weight) in [(-2_isize, -1.0), (-1, 9.0), (0, 9.0), (1, -1.0)] {
-                let Some(cell) = beside
-                    .checked_add_signed(offset)
-                    .filter(|&one| one < axis.count())
-                else {
+                let cell = beside.checked_add_signed(offset);
+                let Some(cell) = cell.filter(|&one| one < axis.count()) else {
                     continue;
                 };
-                let place = cell + REACH - face;
-                let value = (self.potential[cell] - self.face_potential[beside]).exp();
-                let value = value * self.advected[cell] / axis.widths[cell];
-                flux[place] += share * weight / 16.0 * value;
+                let change = share * (self.potential[cell] - self.face_potential[beside]);
+                let value = self.advected[cell] / axis.widths[cell] * change.exp();
+                flux[cell + REACH - face] += missing * weight / 16.0 * value;
             }
         }
     }

@@ -300,8 +300,8 @@ impl Family {
         Ok(self)
     }
 
-    /// The axis whose coordinate is measured from an origin that moves, and where the origin lies at a coordinate of the
-    /// path; `None` where none moves.
+    /// The axis whose coordinate is measured from an origin that moves, and where the origin lies at a coordinate of
+    /// the path; `None` where none moves.
     ///
     /// # Errors
     /// [`SystemError::OutOfRange`].

@@ -438,7 +438,8 @@ fn a_peak_that_reaches_a_kink_is_not_born_there() {
 }
 
 #[test]
-fn a_jump_that_moves_through_the_cells_leaves_no_value_located() {
+fn a_jump_that_moves_through_the_cells_leaves_no_value_located_but_what_cells_show_that_move_with_it()
+ {
     // x and y are independent; y is driven away from θ, and has peaks at ±0.5 as long as θ lies between them: two of
     // y become one at θ = 0.5. Cells that hold the jump show peaks that come and go as it moves.
     let model = TypedModel::new("belt", "A force that jumps at θ", ["x", "y"])
@@ -458,10 +459,16 @@ fn a_jump_that_moves_through_the_cells_leaves_no_value_located() {
         assert!(!rows.is_empty());
         for row in &rows {
             let status = row.status();
-            assert_ne!(status, BifurcationStatus::Located, "{}", words(&rows));
+            if status == BifurcationStatus::Located {
+                let is_right = (row.value - 0.5).abs() <= row.error;
+                let counts = (row.before.peaks, row.after.peaks);
+                assert!(is_right && counts == (2, 1), "{}", words(&rows));
+                continue;
+            }
             let jumps = matches!(row.reason(), Some(Doubt::JumpInsideCells(1, _)));
             let is_told = jumps || status != BifurcationStatus::Unresolved;
-            assert!(is_told || row.zero.is_none(), "{}", words(&rows));
+            let holds = (row.value - 0.5).abs() <= row.error;
+            assert!(is_told || holds || row.zero.is_none(), "{}", words(&rows));
         }
     }
 }
