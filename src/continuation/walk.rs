@@ -20,6 +20,10 @@ use crate::topology::Detector;
 /// Solves beyond the given values at most, for any sweep, and for each of its values.
 const MOST_EXTRA: usize = 400;
 const MOST_EXTRA_A_VALUE: usize = 10;
+/// The same where cells are many: so many cells in all of them, and a solve for each value at least. What a sweep finds
+/// that asks for more comes and goes with its cells.
+const MOST_EXTRA_CELLS: usize = 8_000_000;
+const LEAST_EXTRA_A_VALUE: usize = 4;
 
 /// The solved values of a stretch of a sweep.
 pub(super) struct Walk<'a> {
@@ -61,10 +65,18 @@ impl<'a> Walk<'a> {
             unsure: Vec::new(),
         };
         walk.walk()?;
-        walk.narrow(most.min(MOST_EXTRA.max(MOST_EXTRA_A_VALUE * values.len())))?;
+        walk.narrow(most.min(walk.most_extra(values.len())))?;
         // Checks are solved in sessions of their own.
         walk.segments.clear();
         Ok(walk)
+    }
+
+    /// Solves beyond so many given values at most.
+    fn most_extra(&self, values: usize) -> usize {
+        let by_number = MOST_EXTRA.max(MOST_EXTRA_A_VALUE * values);
+        let cells = self.source.cells().unwrap_or(1).max(1);
+        let by_cells = (MOST_EXTRA_CELLS / cells).max(LEAST_EXTRA_A_VALUE * values);
+        by_number.min(by_cells)
     }
 
     /// Solves the given values, and between neighbours that differ much.

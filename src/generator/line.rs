@@ -9,8 +9,9 @@
 //!
 //! At a switching surface r jumps and φ has a kink. Density and flux are continuous there, hence D p e^{φ} is
 //! smooth to first order and its stencils may cross the surface: the kink of the density sits in φ, exactly,
-//! and the scheme is the same at every friction level. The advected part takes p e^{φ} there too. (Stencils closed on either side, with a penalty on the
-//! jump, were measured to be no better on a graded axis and half as accurate on a uniform one.)
+//! and the scheme is the same at every friction level. The advected part takes p e^{φ} there too. (Stencils closed
+//! on either side, with a penalty on the jump, were measured to be no better on a graded axis and half as accurate on a
+//! uniform one.)
 
 use super::geometry::{AxisGeometry, End};
 use super::scheme::{REACH, Window};
@@ -170,21 +171,22 @@ impl Line {
     }
 
     /// The share of φ with which the advected density is multiplied where a stencil reaches across a switching surface:
-    /// all of it as long as neither φ nor what is advected changes the density so much over a cell that a fit is held
-    /// back, less as they change it more, and nothing at the most that is fitted. There the product is no smoother than
-    /// the density.
+    /// nearly all of it as long as φ and what is advected change the density by less than a factor e over a cell, and
+    /// next to nothing where they change it by e² or more, as the product is no smoother than the density there. It is
+    /// analytic in the drift, as [`Self::damp`] is.
     fn share_of_fit(&self, axis: &AxisGeometry, face: usize) -> f64 {
         let cells = face.saturating_sub(REACH)..(face + REACH).min(axis.count());
-        let changes = cells.map(|cell| {
-            let fitted = self.potential[cell] - self.face_potential[face];
-            let advected = self.advected[cell] * axis.widths[cell];
-            let advected = advected / self.diffusion[cell].max(f64::MIN_POSITIVE);
-            (fitted.abs() / (REACH as f64 - 0.5)).max(advected.abs())
-        });
-        let a_cell = changes.fold(0.0, f64::max);
-        let free = 0.5 * FITTED_LIMIT;
-        let held = ((a_cell - free) / (FITTED_LIMIT - free)).clamp(0.0, 1.0);
-        1.0 - held * held * (3.0 - 2.0 * held)
+        let (mut fitted, mut advected, mut distances) = (0.0, 0.0, 0.0);
+        let all = cells.len() as f64;
+        for cell in cells {
+            let distance = cell as f64 + 0.5 - face as f64;
+            distances += distance * distance;
+            fitted += (self.potential[cell] - self.face_potential[face]).powi(2);
+            let change = self.advected[cell] * axis.widths[cell];
+            advected += (change / self.diffusion[cell].max(f64::MIN_POSITIVE)).powi(2) / all;
+        }
+        let squared = fitted / distances + advected;
+        1.0 / (1.0 + (0.5 * squared).powi(4))
     }
 
     /// Where a stencil reaches across a switching surface, the drift times the density is reconstructed as its product

@@ -26,7 +26,7 @@ fn belt(seed: u64) -> Option<Case> {
     let along = format!("(theta + {k} {u} - {u}^3 - {f} sign({u} - {b}))").replace("- -", "+ ");
     let aside = format!("{stiff} (x - {slope} y)").replace("- -", "+ ");
     // -∇V with V = W(y) + stiff (x - slope y)²/2, and a rotation of it.
-    let of_y = format!("({along} + {slope} {aside})");
+    let of_y = format!("({along} + ({slope}) * {aside})");
     let formula = Formula {
         family: "",
         drift: of_y.clone(),
@@ -44,8 +44,8 @@ fn belt(seed: u64) -> Option<Case> {
     let half = slope.abs() * range.0.abs().max(range.1) + 8.0 * sigma / (2.0 * stiff).sqrt();
     let half = (half * 100.0).ceil() / 100.0;
     let drifts = [
-        format!("-{aside} + {turn} {of_y}"),
-        format!("{of_y} + {turn} {aside}"),
+        format!("-{aside} + ({turn}) * {of_y}"),
+        format!("{of_y} + ({turn}) * {aside}"),
     ];
     let model = TypedModel::new("random", "A random system", ["x", "y"])
         .with_equation("x", &drifts[0])
