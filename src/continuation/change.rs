@@ -7,6 +7,7 @@
 use super::Point;
 use super::events::{Event, events};
 use super::follow::{Course, Crossing, follow};
+use super::grid::Counts;
 use super::root::root;
 use crate::topology::{Detector, FeatureKind, Indicator, IndicatorKind, Signature};
 
@@ -28,7 +29,16 @@ pub(super) struct Change {
 }
 
 impl Change {
-    /// Whether no more than one peak and one crater come or go.
+    /// What may be counted beside its zero.
+    pub(super) fn counts(&self) -> Counts {
+        let absent = |event: &Event| if event.above { self.before } else { self.after };
+        Counts {
+            both: [self.before, self.after],
+            absent: self.event.as_ref().map(absent),
+        }
+    }
+
+    /// Whether numbers of peaks, craters and rings differ by one at most.
     pub(super) fn is_single(&self) -> bool {
         let counts = |one: &Signature| [one.peaks, one.craters, one.rings];
         let pairs = counts(&self.before).into_iter().zip(counts(&self.after));

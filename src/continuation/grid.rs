@@ -10,7 +10,6 @@ use super::doubt::{CheckedBy, Doubt};
 use super::root::Root;
 use super::span::Span;
 use super::{CellCheck, Session, SourceError};
-use crate::density::EstimatedDensity;
 use crate::topology::{Detector, IndicatorKind, Signature};
 
 /// Error of a value on finer cells over its distance to the value on those that it checks, see above; what order one
@@ -122,7 +121,27 @@ pub(super) struct Checked<'a> {
     pub(super) place: &'a [f64],
     pub(super) root: Root,
     /// What may be counted beside the zero, where the sweep's own cells cannot be trusted with it.
-    pub(super) counts: Option<[Signature; 2]>,
+    pub(super) counts: Option<Counts>,
+}
+
+/// What may be counted beside a zero.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Counts {
+    /// Below and above it.
+    pub(super) both: [Signature; 2],
+    /// Where the indicator says that its feature is absent, which cannot be by the feature being low; `None` for the
+    /// indicators of centres.
+    pub(super) absent: Option<Signature>,
+}
+
+impl Counts {
+    /// Whether what is counted fits to an indicator.
+    fn allow(&self, counted: &Signature, indicator: f64) -> bool {
+        match self.absent.filter(|_| indicator <= 0.0) {
+            Some(absent) => *counted == absent,
+            None => self.both.contains(counted),
+        }
+    }
 }
 
 /// What was seen of an indicator at a value before. Several rows may ask for the same, and a solve from another start
@@ -167,13 +186,16 @@ pub(super) fn solve(
         return Seen::Failed(status.word().to_owned());
     }
     let density = solution.densities.get(checked.observable);
-    let is_counted = |density: &&EstimatedDensity| {
-        let counts = checked.counts.as_ref();
-        counts.is_none_or(|counts| counts.contains(&detector.detect(density).signature))
-    };
-    let density = density.filter(is_counted);
-    let indicator =
-        density.and_then(|density| detector.indicator(density, checked.kind, checked.place));
+    let indicator = density.and_then(|density| {
+        let found = detector.indicator(density, checked.kind, checked.place)?;
+        let is_counted =
+            |counts: &Counts| counts.allow(&detector.detect(density).signature, found.value);
+        checked
+            .counts
+            .as_ref()
+            .is_none_or(is_counted)
+            .then_some(found)
+    });
     indicator.map_or(Seen::Absent, |one| {
         Seen::Value(one.value, one.systematic_error)
     })

@@ -97,19 +97,13 @@ pub(super) fn by_indicator(
     // What follows from the equations: no grid takes part.
     let depends_on_cells = !crossing.ends.iter().all(Indicator::is_free_of_cells);
     // A jump inside of cells makes them count what they like: those that move with it must count what the sweep does.
-    let is_followed = matches!(
-        subject.cell_check,
-        CellCheck::OnFinerCells {
-            follows: Some(_),
-            ..
-        }
-    );
+    let is_followed = follows_a_jump(subject.cell_check, [a, b]);
     let checked = Checked {
         observable: change.observable,
         kind: crossing.kind(),
         place: &crossing.ends[0].place,
         root: zero,
-        counts: is_followed.then_some([change.before, change.after]),
+        counts: is_followed.then(|| change.counts()),
     };
     let on_finer = depends_on_cells.then(|| {
         let is_forced = subject.family.model().phase_axis().is_some();
@@ -315,6 +309,16 @@ fn are_settled(distances: &[f64], check: CellCheck) -> bool {
 pub(super) fn has_wide_cells(point: &Point) -> bool {
     let mut findings = point.report.findings.iter();
     findings.any(|finding| matches!(finding, Finding::WideCells { .. }))
+}
+
+/// Whether the drift jumps inside of the cells of one of two points, and finer cells move with it.
+fn follows_a_jump(check: CellCheck, pair: [&Point; 2]) -> bool {
+    let CellCheck::OnFinerCells { follows, .. } = check else {
+        return false;
+    };
+    let mut findings = pair.iter().flat_map(|point| &point.report.findings);
+    findings
+        .any(|one| matches!(one, Finding::JumpInsideCells { axis, .. } if follows == Some(*axis)))
 }
 
 /// What speaks against the densities on either side of a zero. What holds of one that leaks away, or has not converged,

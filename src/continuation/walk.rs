@@ -20,8 +20,8 @@ use crate::topology::Detector;
 /// Solves beyond the given values at most, for any sweep, and for each of its values.
 const MOST_EXTRA: usize = 400;
 const MOST_EXTRA_A_VALUE: usize = 10;
-/// The same where cells are many: so many cells in all of them, and a solve for each value at least. What a sweep finds
-/// that asks for more comes and goes with its cells.
+/// The same where cells are many: so many cells in all of them, but no fewer solves than these for each value. What
+/// asks for more comes and goes with the cells.
 const MOST_EXTRA_CELLS: usize = 8_000_000;
 const LEAST_EXTRA_A_VALUE: usize = 4;
 

@@ -196,11 +196,14 @@ impl Line {
         for beside in [face - 1, face + 1] {
             let change = share * (self.face_potential[beside] - self.face_potential[face]);
             let missing = change.exp_m1() / 24.0;
-            for (offset, weight) in [(-2_isize, -1.0), (-1, 9.0), (0, 9.0), (1, -1.0)] {
-                let cell = beside.checked_add_signed(offset);
-                let Some(cell) = cell.filter(|&one| one < axis.count()) else {
-                    continue;
-                };
+            let is_whole = beside >= 2 && beside + 1 < axis.count();
+            let weights = if is_whole {
+                [-1.0, 9.0, 9.0, -1.0]
+            } else {
+                [0.0, 8.0, 8.0, 0.0]
+            };
+            for (cell, weight) in (0..4).zip(weights).filter(|(_, weight)| *weight != 0.0) {
+                let cell = beside + cell - 2;
                 let change = share * (self.potential[cell] - self.face_potential[beside]);
                 let value = self.advected[cell] / axis.widths[cell] * change.exp();
                 flux[cell + REACH - face] += missing * weight / 16.0 * value;

@@ -166,7 +166,7 @@ impl Problem {
         problem
     }
 
-    /// The same seen from where the first switching surface across an axis lies.
+    /// The same in the coordinate in which the first switching surface across an axis does not move.
     ///
     /// # Errors
     /// [`MethodError::System`].

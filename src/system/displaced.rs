@@ -18,12 +18,13 @@ pub(super) struct Displaced {
 }
 
 impl Displaced {
-    pub(super) fn new(system: Arc<dyn System>, axis: usize, by: f64) -> Self {
+    /// The system seen from an origin at `by`, from which its first switching surface across the axis lies at `at`.
+    pub(super) fn new(system: Arc<dyn System>, axis: usize, by: f64, at: f64) -> Self {
         let noises = system.noises().iter();
         let noises = noises.map(|noise| displaced_noise(noise, axis, by));
         Self {
             noises: noises.collect(),
-            facts: displaced_facts(system.facts(), axis, by),
+            facts: displaced_facts(system.facts(), axis, by, at),
             system,
             axis,
             by,
@@ -59,7 +60,7 @@ fn displaced_noise(noise: &Noise, axis: usize, by: f64) -> Noise {
     }
 }
 
-fn displaced_facts(facts: &Facts, axis: usize, by: f64) -> Facts {
+fn displaced_facts(facts: &Facts, axis: usize, by: f64, at: f64) -> Facts {
     let mut facts = facts.clone();
     let ends = |ranges: &mut BTreeMap<usize, (f64, f64)>| {
         if let Some((low, high)) = ranges.get_mut(&axis) {
@@ -73,8 +74,10 @@ fn displaced_facts(facts: &Facts, axis: usize, by: f64) -> Facts {
         *mean -= by;
     }
     let surfaces = facts.switching_surfaces.iter_mut();
-    for surface in surfaces.filter(|surface| surface.axis == axis) {
-        surface.at -= by;
+    let across = surfaces.filter(|surface| surface.axis == axis);
+    for (place, surface) in across.enumerate() {
+        // Without rounding, so that it lies at one place for all systems.
+        surface.at = if place == 0 { at } else { surface.at - by };
     }
     if let Some(symmetry) = &mut facts.symmetry {
         symmetry.centre[axis] -= by;
@@ -144,7 +147,7 @@ mod tests {
             ..Facts::default()
         };
         let system: Arc<dyn System> = Arc::new(OnABelt([noise], facts));
-        let displaced = Displaced::new(system.clone(), 1, 0.75);
+        let displaced = Displaced::new(system.clone(), 1, 0.75, 0.25);
         for (x, u) in [(0.5, 0.2), (-0.3, 0.3), (0.1, -2.0)] {
             let (here, there) = ([x, u], [x, u + 0.75]);
             assert_eq!(displaced.drift_at(0.0, &here), system.drift_at(0.0, &there));

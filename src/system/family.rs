@@ -283,7 +283,7 @@ impl Family {
             return system;
         };
         let by = origin.of(system.as_ref());
-        Arc::new(Displaced::new(system, origin.axis, by))
+        Arc::new(Displaced::new(system, origin.axis, by, origin.at))
     }
 
     /// The family in the coordinate of an axis in which the first switching surface across it stays where it is in the
@@ -298,6 +298,11 @@ impl Family {
         let at = middle.facts().surfaces_on(axis).next();
         self.origin = at.map(|at| MovingOrigin { axis, at });
         Ok(self)
+    }
+
+    /// Whether the coordinate of an axis is measured from an origin that moves.
+    pub(crate) fn has_moving_origin(&self) -> bool {
+        self.origin.is_some()
     }
 
     /// The axis whose coordinate is measured from an origin that moves, and where the origin lies at a coordinate of

@@ -51,6 +51,8 @@ impl Session for GeneratorSession {
         let origin = origin.map_err(MethodError::from)?;
         let mut solution = self.solve_from_nearest(value)?;
         if let Some((axis, at)) = origin {
+            // It is one at a fixed distance from the origin.
+            solution.sensitivity = None;
             for density in &mut solution.densities {
                 density.displace(axis, at);
             }

@@ -57,8 +57,23 @@ pub(super) fn followed_surfaces(problem: &Problem) -> Option<MovingSurfaces> {
     if space.axes().len() < 2 || axes.any(|axis| axis >= space.axes().len()) {
         return None;
     }
-    moving_surfaces(&problem.family().along().ok()?, space)
+    let family = problem.family();
+    let mut found = moving_surfaces(&family.along().ok()?, space)?;
+    // Between the ends and the middle they may lie farther off than there.
+    let (from, to) = family.ends();
+    for share in (0..=SAMPLED).map(|step| f64::from(step) / f64::from(SAMPLED)) {
+        let system = family.at(from + share * (to - from)).ok()?;
+        let by = system.facts().surfaces_on(found.axis).next()? - found.places[0];
+        let [least, most] = &mut found.displacements;
+        (*least, *most) = (least.min(by), most.max(by));
+    }
+    let cells = &space.axes()[found.axis];
+    let [least, most] = found.displacements;
+    (most - least <= cells.to() - cells.from()).then_some(found)
 }
+
+/// Values along a sweep at which it is asked how far surfaces move.
+const SAMPLED: u32 = 16;
 
 /// Which of the factors is meant.
 pub(super) fn finer_factor(space: &CellSpace) -> f64 {

@@ -147,7 +147,8 @@ impl GeneratorSession {
         system: &Arc<dyn System>,
         (known, watched): (Option<Known<'_>>, &[EstimatedDensity]),
     ) -> Result<(), MethodError> {
-        if self.source.checks {
+        // Questions are asked in coordinates that stay.
+        if self.source.checks || self.source.problem.family().has_moving_origin() {
             return Ok(());
         }
         let planes = planes(&self.source.kinked);

@@ -114,7 +114,7 @@ impl GeneratorSource {
             let cells = &mut finer[surfaces.axis];
             let [least, most] = surfaces.displacements;
             let range = (cells.from() - most, cells.to() - least);
-            *cells = cells.about(range, &surfaces.places)?;
+            *cells = cells.about(range, &surfaces.places, &surfaces.left)?;
             problem = problem.following_surface(surfaces.axis)?;
         }
         let problem = problem.on(CellSpace::new(finer)?)?;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::wants_face;
 use crate::space::CellSpace;
-use crate::system::System;
+use crate::system::{self, System};
 
 /// An axis of cells across which all switching surfaces move alike along a sweep.
 #[derive(Debug, PartialEq)]
@@ -14,10 +14,15 @@ pub(in crate::method) struct MovingSurfaces {
     pub(in crate::method) displacements: [f64; 2],
     /// Where they lie there.
     pub(in crate::method) places: Vec<f64>,
+    /// Where they lie at both ends of the sweep.
+    pub(in crate::method) left: Vec<f64>,
 }
 
 /// Share of a range by which surfaces move that move at all, and by which those that move alike differ at most.
 const ROUNDING: f64 = 1e-9;
+
+/// How far they move at most, as a share of the range: cells that move with them hold so much more.
+const MOST: f64 = 0.5;
 
 /// The first axis whose cells would have a face on a switching surface at every value of a sweep if its origin moved
 /// along; given systems at the first end, in the middle, and at the last end. Axes whose coordinate is kept within
@@ -32,9 +37,16 @@ pub(in crate::method) fn moving_surfaces(
     let axes = space.axes().iter().enumerate();
     let mut lines = axes.filter(|(axis, cells)| {
         let facts = middle.facts();
+        let ranges = space.ranges();
+        let mut all = systems.iter();
         let is_kept = facts.bounds(*axis).is_some()
             || facts.reflecting.contains_key(axis)
-            || facts.filtered_noise.contains_key(axis);
+            || facts.filtered_noise.contains_key(axis)
+            || all.any(|one| {
+                let closed = system::closed_ends(one.as_ref(), *axis, &ranges);
+                let natural = system::natural_ends(one.as_ref(), *axis, &ranges);
+                closed != [false; 2] || natural != [false; 2]
+            });
         !cells.is_modes() && !cells.is_closed() && !is_kept
     });
     lines.find_map(|(axis, cells)| {
@@ -52,16 +64,20 @@ pub(in crate::method) fn moving_surfaces(
         };
         let [below, above] = [displacement(first)?, displacement(last)?];
         let (least, most) = (below.min(above).min(0.0), below.max(above).max(0.0));
-        let surfaces = systems.iter().flat_map(|system| {
-            let all = system.facts().switching_surfaces.iter();
-            all.filter(|surface| surface.axis == axis)
+        let serves = systems.iter().any(|system| {
+            let mut all = system.facts().switching_surfaces.iter();
+            let one = std::slice::from_ref(system);
+            all.any(|surface| {
+                let is_inside = surface.axis == axis && cells.find(surface.at).is_some();
+                is_inside && wants_face(one, *surface, space)
+            })
         });
-        let mut surfaces = surfaces.copied();
-        let serves = surfaces.any(|surface| wants_face(systems, surface, space));
-        (most - least > small && serves).then(|| MovingSurfaces {
+        let is_near = most - least <= MOST * (cells.to() - cells.from());
+        (most - least > small && is_near && serves).then(|| MovingSurfaces {
             axis,
             displacements: [least, most],
             places: here.clone(),
+            left: [&first[..], &last[..]].concat(),
         })
     })
 }

@@ -1,6 +1,6 @@
 //! Axes moved as a whole, and over a wider range.
 
-use super::Axis;
+use super::{Axis, even::is_bend};
 use crate::space::grading::Piece;
 use crate::space::{Grading, SpaceError};
 
@@ -20,11 +20,17 @@ impl Axis {
     }
 
     /// An axis over another range with as many cells a length as this one, which has faces on these places: graded
-    /// toward them down to the smallest of its cells where it is graded, or else even but for the faces.
+    /// toward them down to the smallest of its cells where it is graded, or else even but for the faces. What else it
+    /// is graded toward stays, but for places that are left.
     ///
     /// # Errors
     /// As [`Axis::graded`].
-    pub(crate) fn about(&self, (from, to): (f64, f64), places: &[f64]) -> Result<Self, SpaceError> {
+    pub(crate) fn about(
+        &self,
+        (from, to): (f64, f64),
+        places: &[f64],
+        left: &[f64],
+    ) -> Result<Self, SpaceError> {
         let a_length = self.count() as f64 / (self.to() - self.from());
         let count = (a_length * (to - from)).round() as usize;
         let widths = (0..self.count()).map(|cell| self.width(cell));
@@ -32,8 +38,15 @@ impl Axis {
         if self.is_uniform() || smallest >= (to - from) / count as f64 {
             return Ok(Self::uniform(from, to, count)?.with_faces_on(places));
         }
-        let inside = places.iter().filter(|at| (from..=to).contains(*at));
-        let at = inside.copied().collect();
+        let terms = self.pieces.first().map_or(&[][..], |piece| &piece.terms);
+        let graded = terms
+            .iter()
+            .filter(|term| term.2 > 0.0 && !is_bend(term, self));
+        let own = graded.map(|term| term.1);
+        let near = |at: f64, all: &[f64]| all.iter().any(|one| (one - at).abs() < smallest);
+        let own = own.filter(|&at| !near(at, places) && !near(at, left));
+        let at = places.iter().copied().chain(own);
+        let at: Vec<f64> = at.filter(|at| (from..=to).contains(at)).collect();
         Self::graded(from, to, count, &Grading { at, smallest })
     }
 }
@@ -69,7 +82,7 @@ mod tests {
             Axis::graded(-4.0, 4.0, 100, &grading).unwrap(),
             Axis::uniform(-4.0, 4.0, 100).unwrap(),
         ] {
-            let about = axis.about((-5.0, 4.5), &[0.333]).unwrap();
+            let about = axis.about((-5.0, 4.5), &[0.333], &[1.5]).unwrap();
             assert!(about.has_face_at(0.333));
             assert_eq!((about.from(), about.to(), about.count()), (-5.0, 4.5, 119));
             let smallest = |axis: &Axis| {
