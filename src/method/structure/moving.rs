@@ -26,7 +26,8 @@ const MOST: f64 = 0.5;
 
 /// The first axis whose cells would have a face on a switching surface at every value of a sweep if its origin moved
 /// along; given systems at the first end, in the middle, and at the last end. Axes whose coordinate is kept within
-/// bounds, relaxes as modes need, or closes on itself, have an origin of their own.
+/// bounds or walls, is a filtered noise, has an end at which the noise dies, carries modes, or closes on itself, have
+/// an origin of their own.
 pub(in crate::method) fn moving_surfaces(
     systems: &[Arc<dyn System>],
     space: &CellSpace,
