@@ -110,8 +110,8 @@ pub(super) fn changes(points: &[&Point], detector: &dyn Detector) -> Vec<Change>
     found
 }
 
-/// Leaves a zero to one gap alone, the one that is nearest to it: there one pair comes or goes. What an inflection that
-/// was lost was followed to in place of it is the zero of another.
+/// Leaves a zero to one change alone, the first of those that are nearest to it: there one pair comes or goes. What an
+/// inflection that was lost was followed to in place of it is the zero of another.
 fn one_change_a_zero(changes: &mut [Change]) {
     let claim = |change: &Change| {
         let crossing = change.crossing()?;
@@ -127,9 +127,11 @@ fn one_change_a_zero(changes: &mut [Change]) {
         .iter()
         .map(|one| (claim(one), distance(one)))
         .collect();
-    for (change, (own, away)) in changes.iter_mut().zip(&claims) {
-        let is_taken = |(other, nearer): &(_, usize)| other == own && nearer < away;
-        if own.is_some() && claims.iter().any(is_taken) {
+    for (number, (change, (own, away))) in changes.iter_mut().zip(&claims).enumerate() {
+        let is_taken = |(place, (other, nearer)): (usize, &(_, usize))| {
+            other == own && (*nearer, place) < (*away, number)
+        };
+        if own.is_some() && claims.iter().enumerate().any(is_taken) {
             change.course = None;
         }
     }

@@ -51,6 +51,7 @@ mod keys;
 mod memory;
 mod names;
 mod no_range;
+mod one_side;
 mod prepare;
 mod reader;
 mod report;

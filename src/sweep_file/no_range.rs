@@ -3,8 +3,7 @@
 use super::diagnostic::Diagnostic;
 use super::settings::{Settings, at_cells};
 use super::verify::short;
-use crate::method::{RangeError, pilot_box};
-use crate::system::{System, natural_ends};
+use crate::method::RangeError;
 
 impl Settings {
     /// Why no ranges were found: along which axis, at which value, and what helps.
@@ -18,7 +17,7 @@ impl Settings {
             let value = value.map_or(String::new(), |value| {
                 format!(" at {swept} = {}", short(value))
             });
-            let remedy = self.remedy_of_range(axis, *system);
+            let remedy = self.remedy_of_range(*axis);
             (self.family.axis(*axis).to_owned(), value, remedy)
         };
         let found = |title: String, axis: &str, remedy: String| {
@@ -51,20 +50,10 @@ impl Settings {
         }
     }
 
-    /// What helps where no range of an axis was found at a corner.
-    fn remedy_of_range(&self, axis: &usize, corner: usize) -> String {
-        let (name, model) = (self.family.axis(*axis), self.family.model());
-        let system = self
-            .corners()
-            .get(corner)
-            .map(|values| model.system(values));
-        let ends = self.axes[*axis].ends;
-        if ends == [None; 2] && system.is_some_and(|system| stands_still_at_zero(&*system, *axis)) {
-            return format!(
-                "no path crosses {name} = 0, where its drift and noise vanish: give `cells.{name}.from = 0`, or `to = 0`, \
-                 and the other end is found for that side"
-            );
-        }
+    /// What helps where no range of an axis was found.
+    fn remedy_of_range(&self, axis: usize) -> String {
+        let (name, model) = (self.family.axis(axis), self.family.model());
+        let ends = self.axes[axis].ends;
         let open = match ends {
             [Some(_), None] => "`to`".to_owned(),
             [None, Some(_)] => "`from`".to_owned(),
@@ -78,14 +67,4 @@ impl Settings {
         };
         format!("give {open}{bounds}")
     }
-}
-
-/// Whether no path crosses zero of an axis, as that of a population: it is a natural end of either side.
-fn stands_still_at_zero(system: &dyn System, axis: usize) -> bool {
-    let mut ranges = vec![pilot_box([None; 2]); system.dimension()];
-    let (low, high) = ranges[axis];
-    ranges[axis] = (0.0, high);
-    let above = natural_ends(system, axis, &ranges)[0];
-    ranges[axis] = (low, 0.0);
-    above && natural_ends(system, axis, &ranges)[1]
 }

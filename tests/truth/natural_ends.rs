@@ -8,7 +8,7 @@ use pbif::sweep_file::{Sweep, SweepFile};
 use crate::common::room::Room;
 
 /// Growth with a rate that fluctuates, beside a state that relaxes: x has the gamma density x^(a/D - 1) exp(-x/D),
-/// whose mean is a and whose variance is a D. The lower end alone is given.
+/// whose mean is a and whose variance is a D. No end is given: no path crosses x = 0.
 const GROWTH: &str = r#"
 [system.equations]
 x = "a x - x^2"
@@ -26,7 +26,7 @@ from = -0.1
 to = 1.3
 points = 13
 [cells]
-x = { from = 0, count = 100 }
+x = { count = 100 }
 y = { count = 50 }
 [detect]
 marginals = ["x"]

@@ -113,7 +113,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "Wanted error of the watched densities, in total variation, where counts are left to the program."),
     key("cells.<axis>.range", Kind::Choice(automatic), Rule("`from` and `to`, `auto` without them"), of_axis!(range),
         "`auto` finds a range that holds the density all along the sweep by a few free trajectories; `from` and `to` are then left out, or one of them is given without `range`."),
-    key("cells.<axis>.from", Kind::Number(ANY), Rule("the model's bound, where it knows one, else found"), of_axis!(from),
+    key("cells.<axis>.from", Kind::Number(ANY), Rule("the model's bound, where it knows one; 0 where no path crosses it and no end is given; else found"), of_axis!(from),
         "Lower end of the domain along an axis. With `from = 0` alone, of a population or an intensity, the other end is found, and `grade` is `auto`."),
     key("cells.<axis>.to", Kind::Number(ANY), Rule("the model's bound, where it knows one, else found"), of_axis!(to),
         "Upper end of the domain along an axis."),

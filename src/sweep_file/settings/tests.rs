@@ -306,17 +306,30 @@ fn a_key_in_the_table_of_another_is_shown_its_own() {
 }
 
 #[test]
-fn where_noise_dies_at_zero_the_remedy_of_a_range_names_that_end() {
+fn a_state_that_cannot_cross_zero_is_looked_at_on_the_positive_side() {
     let text = "[system.equations]\nx = \"a x - x^2\"\n[system.noise]\ninterpretation = \"ito\"\nx = \"0.3 x\"\n\
                 [system.parameters]\na = 1\n[sweep]\nparameter = \"a\"\nfrom = 0.5\nto = 1\npoints = 3\n";
-    let settings = parse(text, &[]).unwrap();
-    let report = settings
-        .prepare(&Cancellation::new())
-        .unwrap_err()
-        .to_string();
+    let prepared = |given: &[&str]| {
+        let settings = parse(text, given).unwrap().prepare(&Cancellation::new());
+        settings.unwrap().settings
+    };
+    let settings = prepared(&[]);
+    assert_eq!(settings.axes[0].ends[0], Some(0.0));
+    let said = "cells: x from 0, as no path crosses x = 0";
     assert!(
-        report.contains("give `cells.x.from = 0`, or `to = 0`"),
-        "{report}"
+        settings.chosen.iter().any(|note| note.starts_with(said)),
+        "{:?}",
+        settings.chosen
+    );
+    let given = prepared(&["cells.x={from=0.0001, to=4}"]);
+    assert_eq!(given.axes[0].range(), Some((0.0001, 4.0)));
+    // Immigration carries paths across zero.
+    let carried = text.replace("a x - x^2", "0.1 + a x - x^3");
+    let carried = parse(&carried, &[]).unwrap().prepare(&Cancellation::new());
+    let notes = carried.unwrap().settings.chosen;
+    assert!(
+        notes.iter().all(|note| !note.starts_with(said)),
+        "{notes:?}"
     );
 }
 
