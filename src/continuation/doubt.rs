@@ -1,6 +1,7 @@
 //! Doubts: why a located value may not be what it says. The status of a row, and of a point of a curve, follows from
 //! its first doubt, and so does the reason that is given for it.
 
+use super::finding::MOST_NEGATIVE;
 use super::measure::{DEVIATION, EDGE_MASS, MEAN};
 use super::{CellCheck, ErrorParts, Finding, Point, PointStatus, Subject};
 use crate::density::{Density, EstimatedDensity, Observable};
@@ -342,10 +343,6 @@ const FARTHEST_GUESS: f64 = 4.0;
 /// Standard deviations from the mean that hold all but what does not matter of a density whose tails fall as the normal
 /// one's.
 const TAILS: f64 = 7.5;
-
-/// Share of a density's mass that may be negative where its shape is to be believed. What is negative must be positive
-/// elsewhere, so that wiggles of this size hold as much mass as a small peak does.
-const MOST_NEGATIVE: f64 = 0.02;
 
 #[cfg(test)]
 mod tests;

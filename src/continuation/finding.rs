@@ -5,6 +5,10 @@
 
 mod parts;
 
+/// Share of a density's mass that may be negative where its shape is to be believed. What is negative must be positive
+/// elsewhere, so that wiggles of this size hold as much mass as a small peak does.
+pub(super) const MOST_NEGATIVE: f64 = 0.02;
+
 /// Something that a user must know of a point. Shares are of the whole mass or of the whole time.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -317,6 +321,11 @@ impl Finding {
     /// number is no small one.
     pub(crate) fn is_too_far_to_count(&self) -> bool {
         matches!(self, Self::NotConverged { error } if error.is_nan() || *error > MOST_ERROR)
+    }
+
+    /// Whether the negative part of a watched density is too large for its shape to be read.
+    pub(crate) fn is_too_negative(&self) -> bool {
+        matches!(self, Self::NegativeDensity { mass } if *mass > MOST_NEGATIVE)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::Point;
 use super::events::Event;
+use super::flank::is_between_counted;
 use crate::topology::{Detector, Indicator, IndicatorKind, is_clear};
 
 /// Places of an indicator at neighbouring points farther apart than this, in ranges, are not one place that moved.
@@ -56,7 +57,12 @@ pub(super) fn follow(
         detector.indicator(density, *kind, near)
     };
     // From the side where the feature is, outward.
-    let present = if event.above { right } else { left };
+    let (present, absent) = if event.above {
+        (right, left)
+    } else {
+        (left, right)
+    };
+    let signature = |index: usize| &points[index].detections[observable].signature;
     let outward: Vec<usize> = if event.above {
         (0..right).rev().collect()
     } else {
@@ -82,6 +88,14 @@ pub(super) fn follow(
                 Course::Sunk(gap)
             });
         };
+        // As long as the feature is not counted, what is counted has a shoulder of its own.
+        let is_absent = signature(index) == signature(absent);
+        if next.value > 0.0
+            && is_absent
+            && is_between_counted(points[index], observable, &next.place)
+        {
+            return Some(Course::Lost(gap));
+        }
         if next.value <= 0.0 {
             let ends = if event.above {
                 [next, last]

@@ -47,6 +47,7 @@ mod doubt;
 mod error;
 mod events;
 mod finding;
+mod flank;
 mod fluctuations;
 mod follow;
 mod found;

@@ -66,6 +66,12 @@ impl Point {
         Some((point, refusal))
     }
 
+    /// Whether the point has a steady state whose watched densities are positive enough for their shapes to be read.
+    pub fn is_sound(&self) -> bool {
+        let mut findings = self.report.findings.iter();
+        self.report.status.is_resolved() && !findings.any(Finding::is_too_negative)
+    }
+
     /// Detects in its densities, if anything can be read from them.
     pub(crate) fn detect(&mut self, detector: &dyn Detector) {
         let densities = self.densities.iter().filter(|_| self.is_readable());

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::{Context, Job, JobError, Outcome, Start};
 use crate::continuation::{
-    DensitySource, LocateOptions, Shard, SourceError, SweepError, SweepResult, detect_again,
+    DensitySource, LocateOptions, Point, Shard, SourceError, SweepError, SweepResult, detect_again,
     sweep_shard,
 };
 use crate::figure::{Figure, Figures};
@@ -311,7 +311,7 @@ pub(crate) fn draw_sweep(sweep: &Sweep, found: &SweepResult) -> Vec<Figure> {
 pub(crate) fn sweep_outcome(found: &SweepResult, locate: &LocateOptions) -> Outcome {
     let mut points = found.points.iter();
     let mut statuses = found.labels.iter().filter_map(|row| row.status());
-    let is_complete = points.all(|point| point.report.status.is_resolved())
-        && statuses.all(|status| locate.is_met_by(status));
+    let is_complete =
+        points.all(Point::is_sound) && statuses.all(|status| locate.is_met_by(status));
     Outcome::of(found.interrupted, is_complete)
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use comfy_table::{Table, presets};
 
-use crate::continuation::{Label, Located, Point, PointStatus, RowWords, SweepResult};
+use crate::continuation::{Finding, Label, Located, Point, PointStatus, RowWords, SweepResult};
 use crate::job::QUICK_POINTS;
 use crate::run::{doubt_in_words, format_number, format_with_error};
 use crate::system::{Family, MeasureLevel};
@@ -18,11 +18,7 @@ pub(in crate::cli) fn text(result: &SweepResult, folder: &Path) -> String {
     if !rows.is_empty() {
         text += &table(family, &rows);
     } else if !result.points.is_empty() {
-        let so_far = if result.interrupted { " so far" } else { "" };
-        text += &format!(
-            "no change of topology along {}{so_far}\n",
-            family.parameter()
-        );
+        text += &no_change(result);
     }
     text += &levels(result);
     let solved = |point: &Point| !point.densities.is_empty();
@@ -46,6 +42,23 @@ pub(in crate::cli) fn text(result: &SweepResult, folder: &Path) -> String {
     text += "\nfiles\n";
     for name in files(folder) {
         text += &format!("  {}\n", folder.join(name).display());
+    }
+    text
+}
+
+/// That nothing was found, and how much that means.
+fn no_change(result: &SweepResult) -> String {
+    let so_far = if result.interrupted { " so far" } else { "" };
+    let parameter = result.subject.family.parameter();
+    let mut text = format!("no change of topology along {parameter}{so_far}\n");
+    let findings = |point: &Point| point.report.findings.iter().any(Finding::is_too_negative);
+    let negative = result.points.iter().filter(|point| findings(point)).count();
+    if negative > 0 {
+        text += &format!(
+            "this proves little: at {negative} of {} values densities have a negative part too large for their shape to \
+             be read, and more cells are needed\n",
+            result.points.len()
+        );
     }
     text
 }

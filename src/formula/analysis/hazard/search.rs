@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use super::{Bounds, Domain, Hazard, HazardKind};
 use crate::formula::analysis::Interval;
-use crate::formula::arithmetic::Binary;
+use crate::formula::arithmetic::{Binary, Unary};
 use crate::formula::graph::{Evaluator, Expression, Node, Point};
 
 /// Boxes that are looked at for each operation, and fewer of a very long expression.
@@ -238,13 +238,26 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// The divisor of a quotient or the base of a power.
+    /// What is zero where the divisor of a quotient or the base of a power is, and changes its sign there if anything
+    /// does: of (1 - x)² it is 1 - x.
     fn divisor(&self) -> Option<Expression> {
-        match self.graph.node(self.part) {
-            Node::Binary(Binary::Divide, _, divisor) => Some(divisor),
-            Node::Binary(Binary::Power, base, _) => Some(base),
-            _ => None,
+        let mut divisor = match self.graph.node(self.part) {
+            Node::Binary(Binary::Divide, _, divisor) => divisor,
+            Node::Binary(Binary::Power, base, _) => base,
+            _ => return None,
+        };
+        loop {
+            divisor = match self.graph.node(divisor) {
+                Node::Unary(Unary::Abs | Unary::Sqrt, of) => of,
+                Node::Binary(Binary::Multiply, of, same) if of == same => of,
+                Node::Binary(Binary::Power, base, exponent) if self.is_positive(exponent) => base,
+                _ => return Some(divisor),
+            };
         }
+    }
+
+    fn is_positive(&self, expression: Expression) -> bool {
+        matches!(self.graph.node(expression), Node::Constant(number) if number.value() > 0.0)
     }
 
     /// Whether the operation is needed at a place and has finite operands but no finite value.

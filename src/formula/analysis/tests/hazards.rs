@@ -24,7 +24,12 @@ fn hazards_are_found_with_a_state_and_safe_formulas_pass() {
         ("1/(x - 0.3)", vec![(DivisionByZero, true)]),
         ("y/(x + y z)", vec![(DivisionByZero, true)]),
         ("1/x^2", vec![(DivisionByZero, true)]),
-        ("1/(x - 0.3)^2", vec![(DivisionByZero, false)]),
+        ("1/(x - 0.3)^2", vec![(DivisionByZero, true)]),
+        ("1/sqrt(abs(x - 0.3)^3)", vec![(DivisionByZero, true)]),
+        (
+            "1/((x - 0.3)^2 + (y - 0.1)^2)",
+            vec![(DivisionByZero, false)],
+        ),
         ("y/a", vec![(DivisionByZero, true)]),
         // The dependence of x² and x on each other is only seen in small boxes.
         ("1/(x^2 - x + 0.3)", vec![]),

@@ -1,0 +1,81 @@
+//! The peak and the valley between which a shoulder of a density along one axis lies.
+
+use super::Point;
+use crate::density::Density;
+use crate::topology::{FeatureKind, Verdict};
+
+/// How far a feature may be from the cell that is highest or lowest around it, in widths of that cell.
+const BESIDE: f64 = 1.5;
+
+/// Whether a place of a density along one axis is on the flank between a peak and a valley that are both counted at
+/// that point. A shoulder there is theirs, and tells nothing of a pair that is not counted.
+pub(super) fn is_between_counted(point: &Point, observable: usize, place: &[f64]) -> bool {
+    let (density, detection) = (
+        &point.densities[observable].density,
+        &point.detections[observable],
+    );
+    let Some((peak, valley)) = ends_of_flank(density, place) else {
+        return false;
+    };
+    let axis = &density.axes[0];
+    let is_counted = |kind: FeatureKind, cell: usize| {
+        let (centre, width) = (axis.centre(cell), axis.width(cell));
+        let features = detection.features.iter();
+        let mut counted =
+            features.filter(|one| one.kind == kind && one.verdict == Verdict::Present);
+        counted.any(|one| (one.position[0] - centre).abs() <= BESIDE * width)
+    };
+    is_counted(FeatureKind::Peak, peak) && is_counted(FeatureKind::Valley, valley)
+}
+
+/// The cells at the upper and the lower end of the flank that a place lies on; `None` off a density along one axis, and
+/// at its extrema.
+fn ends_of_flank(density: &Density, place: &[f64]) -> Option<(usize, usize)> {
+    let ([axis], [place], values) = (&density.axes[..], place, &density.values) else {
+        return None;
+    };
+    let start = axis
+        .edges()
+        .partition_point(|edge| edge <= place)
+        .checked_sub(1)?;
+    if start == 0 || start + 1 >= values.len() {
+        return None;
+    }
+    let rises = values[start + 1] > values[start - 1];
+    let mut right = start;
+    while right + 1 < values.len() && (values[right + 1] > values[right]) == rises {
+        right += 1;
+    }
+    let mut left = start;
+    while left > 0 && (values[left] > values[left - 1]) == rises {
+        left -= 1;
+    }
+    Some(if rises { (right, left) } else { (left, right) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::Axis;
+
+    #[test]
+    fn a_flank_ends_at_its_peak_and_its_valley() {
+        // Peaks at -1 and 1 with a valley between them.
+        let axis = Axis::uniform(-2.0, 2.0, 40).unwrap();
+        let values = axis
+            .centres()
+            .iter()
+            .map(|x| 2.0 + 2.0 * x * x - x.powi(4))
+            .collect();
+        let axes = vec![axis];
+        let density = Density { axes, values };
+        let cells = |place: f64| ends_of_flank(&density, &[place]);
+        let at = |cell: usize| density.axes[0].centre(cell);
+        let (peak, valley) = cells(0.5).unwrap();
+        assert!((at(peak) - 1.0).abs() < 0.1 && at(valley).abs() < 0.1);
+        let (peak, valley) = cells(-0.5).unwrap();
+        assert!((at(peak) + 1.0).abs() < 0.1 && at(valley).abs() < 0.1);
+        assert_eq!(cells(1.5).unwrap().1, 39);
+        assert_eq!(cells(-1.99), None);
+    }
+}
