@@ -2,19 +2,21 @@
 
 use super::Point;
 use crate::density::Density;
-use crate::topology::{FeatureKind, Verdict};
+use crate::topology::{FeatureKind, Indicator, Verdict};
 
 /// How far a feature may be from the cell that is highest or lowest around it, in widths of that cell.
 const BESIDE: f64 = 1.5;
 
-/// Whether a place of a density along one axis is on the flank between a peak and a valley that are both counted at
-/// that point. A shoulder there is theirs, and tells nothing of a pair that is not counted.
-pub(super) fn is_between_counted(point: &Point, observable: usize, place: &[f64]) -> bool {
+/// Whether the inflection at a place of a density along one axis is that of a flank between a peak and a valley that
+/// are both counted at the point. It is theirs then, and tells nothing of a pair that is not counted.
+pub(super) fn is_between_counted(point: &Point, observable: usize, inflection: &Indicator) -> bool {
     let (density, detection) = (
         &point.densities[observable].density,
         &point.detections[observable],
     );
-    let Some((peak, valley)) = ends_of_flank(density, place) else {
+    let rising = inflection.kind.traits().rising;
+    let flank = rising.and_then(|rising| ends_of_flank(density, &inflection.place, rising));
+    let Some((peak, valley)) = flank else {
         return false;
     };
     let axis = &density.axes[0];
@@ -29,8 +31,8 @@ pub(super) fn is_between_counted(point: &Point, observable: usize, place: &[f64]
 }
 
 /// The cells at the upper and the lower end of the flank that a place lies on; `None` off a density along one axis, and
-/// at its extrema.
-fn ends_of_flank(density: &Density, place: &[f64]) -> Option<(usize, usize)> {
+/// where cells do not rise, or fall, as they should: a pair may be narrower than they are.
+fn ends_of_flank(density: &Density, place: &[f64], rises: bool) -> Option<(usize, usize)> {
     let ([axis], [place], values) = (&density.axes[..], place, &density.values) else {
         return None;
     };
@@ -38,10 +40,10 @@ fn ends_of_flank(density: &Density, place: &[f64]) -> Option<(usize, usize)> {
         .edges()
         .partition_point(|edge| edge <= place)
         .checked_sub(1)?;
-    if start == 0 || start + 1 >= values.len() {
+    let is_inside = 0 < start && start + 1 < values.len();
+    if !is_inside || (values[start + 1] > values[start - 1]) != rises {
         return None;
     }
-    let rises = values[start + 1] > values[start - 1];
     let mut right = start;
     while right + 1 < values.len() && (values[right + 1] > values[right]) == rises {
         right += 1;
@@ -69,13 +71,13 @@ mod tests {
             .collect();
         let axes = vec![axis];
         let density = Density { axes, values };
-        let cells = |place: f64| ends_of_flank(&density, &[place]);
+        let cells = |place: f64, rises: bool| ends_of_flank(&density, &[place], rises);
         let at = |cell: usize| density.axes[0].centre(cell);
-        let (peak, valley) = cells(0.5).unwrap();
+        let (peak, valley) = cells(0.5, true).unwrap();
         assert!((at(peak) - 1.0).abs() < 0.1 && at(valley).abs() < 0.1);
-        let (peak, valley) = cells(-0.5).unwrap();
+        let (peak, valley) = cells(-0.5, false).unwrap();
         assert!((at(peak) + 1.0).abs() < 0.1 && at(valley).abs() < 0.1);
-        assert_eq!(cells(1.5).unwrap().1, 39);
-        assert_eq!(cells(-1.99), None);
+        assert_eq!(cells(1.5, false).unwrap().1, 39);
+        assert_eq!((cells(0.5, false), cells(-1.99, true)), (None, None));
     }
 }

@@ -90,10 +90,7 @@ pub(super) fn follow(
         };
         // As long as the feature is not counted, what is counted has a shoulder of its own.
         let is_absent = signature(index) == signature(absent);
-        if next.value > 0.0
-            && is_absent
-            && is_between_counted(points[index], observable, &next.place)
-        {
+        if next.value > 0.0 && is_absent && is_between_counted(points[index], observable, &next) {
             return Some(Course::Lost(gap));
         }
         if next.value <= 0.0 {
