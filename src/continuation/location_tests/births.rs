@@ -227,3 +227,43 @@ fn a_broken_pitchfork_is_a_fold() {
         assert!(row.upper < 0.33, "{row:?}");
     }
 }
+
+/// Peaks at -0.64 and 0.1 with a valley at -0.42 between them, and up to θ = 0 a peak and a valley about -0.8:
+/// (log p)' = -200 ((x + 0.8)² + θ) (x + 0.64) (x + 0.42) (x - 0.1). Beyond θ = 0 the shoulder about -0.8 soon vanishes
+/// and leaves the flank at -0.5 as the nearest inflection of its direction.
+fn beside_another_flank() -> Exact<impl Formula> {
+    let slope = |theta: f64, x: f64| {
+        let pair = (x + 0.8).powi(2) + theta;
+        -200.0 * pair * (x + 0.64) * (x + 0.42) * (x - 0.1)
+    };
+    Exact::new(
+        1,
+        200,
+        |_| Structure::default(),
+        move |theta: f64, at: &[f64]| {
+            // Three nodes integrate a polynomial of fifth degree exactly.
+            let nodes = GAUSS.iter();
+            let mean: f64 = nodes
+                .map(|(node, weight)| weight * slope(theta, 0.5 * at[0] * (1.0 + node)))
+                .sum();
+            (at[0] * mean).exp()
+        },
+    )
+}
+
+#[test]
+fn a_pair_that_vanishes_beside_the_flank_of_another_is_not_followed_to_that_flank() {
+    for points in [6, 8, 11] {
+        let result = run(&beside_another_flank(), (-0.015, 0.1, points), 1e-4);
+        let found = rows(&result);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert_eq!(words(found[0]), "3 peaks → 2 peaks, peak and valley vanish");
+        assert_eq!(
+            found[0].status(),
+            BifurcationStatus::Located,
+            "{:?}",
+            found[0]
+        );
+        assert!(found[0].value.abs() <= found[0].error, "{:?}", found[0]);
+    }
+}
