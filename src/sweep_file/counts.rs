@@ -7,6 +7,7 @@ use super::diagnostic::Diagnostic;
 use super::draft::MethodKind;
 use super::report::Report;
 use super::settings::{AxisSettings, Grade, Modes, ModesOf, Settings, cell_space};
+use super::typed_noise::{better_written, is_noise_with_memory};
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource as _, SourceError};
 use crate::density::{EstimatedDensity, Observable};
@@ -81,7 +82,22 @@ impl Settings {
             );
         }
         self.chosen.push(note);
+        if place > 1 {
+            self.tell_of_typed_noise(ends);
+        }
         Ok(())
+    }
+
+    /// Says which of the states that are cut into cells modes would carry, were they written as noise.
+    fn tell_of_typed_noise(&mut self, systems: &[Arc<dyn System>]) {
+        let kind = self.method.kind;
+        for (axis, settings) in self.axes.iter().enumerate() {
+            let is_noise = |system: &Arc<dyn System>| is_noise_with_memory(&**system, axis);
+            if settings.is_cut(kind) && systems.iter().all(is_noise) {
+                self.chosen
+                    .push(format!("cells: {}", better_written(self.family.axis(axis))));
+            }
+        }
     }
 
     /// The same with the cells of the first coarse grid where their numbers are left open.

@@ -60,6 +60,7 @@ mod settings;
 mod sweep;
 mod syntax;
 mod text;
+mod typed_noise;
 mod value;
 mod verify;
 mod write;

@@ -1,10 +1,14 @@
 //! What is said of the settings of an axis that a method cannot use, or that are of no use to it.
 
+use std::sync::Arc;
+
 use super::AxisSettings;
 use super::along::{SweptSystems, filter};
 use crate::sweep_file::diagnostic::Diagnostic;
 use crate::sweep_file::draft::MethodKind;
 use crate::sweep_file::reader::Reader;
+use crate::sweep_file::typed_noise::{better_written, is_noise_with_memory};
+use crate::system::System;
 
 /// Cells an axis below which a density along it has no shape: a peak is a cell that is higher than both of its
 /// neighbours.
@@ -103,7 +107,12 @@ pub(super) fn check_modes(
             format!("leave `from` and `to` out, or give `cells.{name}.count` in place of modes"),
         )
     } else if systems.iter().any(|system| system.is_noisy(index)) {
-        ("noise drives it", format!("give `cells.{name}.count`"))
+        let with_memory = |system: &Arc<dyn System>| is_noise_with_memory(&**system, index);
+        let remedy = match systems.iter().all(with_memory) {
+            true => better_written(name),
+            false => format!("give `cells.{name}.count`"),
+        };
+        ("noise drives it", remedy)
     } else if systems
         .iter()
         .any(|system| system.facts().bounds(index).is_none())
