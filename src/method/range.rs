@@ -23,7 +23,8 @@ const FILLED: f64 = 0.2;
 const MARGIN: f64 = 1.5;
 /// Most times that the box is changed.
 const MOST_CHANGES: usize = 40;
-/// Most times that the box is shrunk toward an end that is given, by 32 each time where all visits are in one cell.
+/// Most times that the box is shrunk toward an end that is given, or a point, by 32 each time where all visits are in
+/// one cell.
 const MOST_SHRUNK: usize = 12;
 /// Most steps of each trajectory in all boxes together: those of ten that take the most that one box may.
 const MOST_STEPS: usize = 2_000_000;
@@ -116,6 +117,9 @@ pub(crate) fn automatic_ranges(
     for (number, system) in systems.iter().enumerate() {
         let system = between_given_ends(system, known);
         let found = ranges_of((number, system.as_ref()), known, seed, cancellation)?;
+        let Some(found) = found else {
+            continue;
+        };
         hull = Some(match hull {
             None => found,
             Some(hull) => hull
@@ -125,10 +129,9 @@ pub(crate) fn automatic_ranges(
                 .collect(),
         });
     }
-    if let Some(hull) = &mut hull {
-        alike(systems, known, hull);
-    }
-    let rounded = hull.iter().flatten().zip(known);
+    let mut hull = hull.unwrap_or_else(|| known.iter().copied().map(pilot_box).collect());
+    alike(systems, known, &mut hull);
+    let rounded = hull.iter().zip(known);
     Ok(rounded
         .map(|(&found, &known)| with_known(outward(found), known))
         .collect())
@@ -154,12 +157,14 @@ fn alike(systems: &[Arc<dyn System>], known: &[KnownEnds], hull: &mut [(f64, f64
     }
 }
 
+/// The ranges of one system; `None` where all trajectories end in one point, which says nothing of ranges. The solve
+/// tells that there is no density.
 fn ranges_of(
     (number, system): (usize, &dyn System),
     known: &[KnownEnds],
     seed: u64,
     cancellation: &Cancellation,
-) -> Result<Vec<(f64, f64)>, RangeError> {
+) -> Result<Option<Vec<(f64, f64)>>, RangeError> {
     let (mut steps, mut leaving) = (0, 0);
     let mut shrunk = vec![0; known.len()];
     let mut ranges: Vec<(f64, f64)> = known.iter().copied().map(pilot_box).collect();
@@ -208,7 +213,11 @@ fn ranges_of(
             for axis in free().filter(|&axis| ends_there(known[axis], shrunk[axis])) {
                 found[axis] = pilot_box(known[axis]);
             }
-            return Ok(found);
+            return Ok(Some(found));
+        }
+        let is_point = |axis: usize| known[axis] == [None; 2] && shrunk[axis] >= MOST_SHRUNK;
+        if narrow.iter().any(|&axis| is_point(axis)) {
+            return Ok(None);
         }
         for axis in narrow {
             ranges[axis] = doubled(visited[axis], known[axis]);

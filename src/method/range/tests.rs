@@ -130,3 +130,23 @@ fn the_search_for_a_range_ends_after_steps_that_are_worth_it() {
     assert!(axis == 2 && last.1 > 100.0, "{axis} {last:?}");
     assert!(steps < MOST_STEPS + MOST_STEPS / 5, "{steps}");
 }
+
+#[test]
+fn a_system_whose_paths_end_in_a_point_says_nothing_of_ranges() {
+    // Below its D-bifurcation the multiplicative noise of this oscillator leaves all paths at rest.
+    let oscillator = |s: f64| {
+        let typed = TypedModel::new("parametric", "Parametric noise", ["x", "y"])
+            .with_equation("x", "y")
+            .with_equation("y", "-0.2 y - x - 0.2 x^3")
+            .with_noise("y", [format!("{s} x")])
+            .with_interpretation(crate::system::Interpretation::Stratonovich);
+        typed.build().unwrap().system_with(&[]).unwrap()
+    };
+    let ranges = |systems: &[Arc<dyn System>]| {
+        automatic_ranges(systems, &[[None; 2]; 2], 1, &Cancellation::new()).unwrap()
+    };
+    let above = ranges(&[oscillator(1.2)]);
+    assert_eq!(ranges(&[oscillator(0.2), oscillator(1.2)]), above);
+    let at_rest = ranges(&[oscillator(0.2)]);
+    assert_eq!(at_rest, [pilot_box([None; 2]); 2]);
+}
