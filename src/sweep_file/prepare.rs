@@ -194,6 +194,8 @@ impl Settings {
                 &start,
                 "where the trajectories that look for a range start",
             )?;
+            // Paths that leave a bound that does not hold run away where the equations mean nothing.
+            self.check_contract(&start)?;
         }
         found.map_err(|error| self.refuse(self.no_range(&error)))
     }

@@ -90,7 +90,7 @@ impl Settings {
     }
 
     /// The contract of built-in models, at both ends of the sweep.
-    fn check_contract(&self, ranges: &[(f64, f64)]) -> Result<(), Report> {
+    pub(super) fn check_contract(&self, ranges: &[(f64, f64)]) -> Result<(), Report> {
         let (from, to) = self.family.ends();
         for end in [from, to] {
             let Ok(values) = self.family.values_at(end) else {

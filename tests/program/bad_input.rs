@@ -392,9 +392,27 @@ fn equations_of_other_languages_and_of_other_scales() {
         let bounds = format!("[system.bounds]\nx = {given}\n[system.parameters]");
         assert_refused(TYPED, "[system.parameters]", &bounds, &words);
     }
+    // Beyond the bound that does not hold paths run away, before any domain is known.
+    refused(RUNNING_AWAY.to_owned(), "a.toml", &["`x` does not stay within its bound -1", "a.toml:9:5"]);
     let text = TYPED.replace("[system.equations]", "[equations]");
     refused(text, "a.toml", &["did you mean `system.equations`?"]);
 }
+
+const RUNNING_AWAY: &str = r#"[system.equations]
+x = "y"
+y = "-0.2 y - x + x^3"
+[system.noise]
+y = "s"
+[system.parameters]
+s = 0.2
+[system.bounds]
+x = [-1, 1]
+[sweep]
+parameter = "s"
+from = 0.1
+to = 0.4
+points = 4
+"#;
 
 #[test]
 #[rustfmt::skip]
