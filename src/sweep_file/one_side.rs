@@ -6,13 +6,10 @@ use super::settings::{Grade, Settings};
 use crate::method::pilot_box;
 use crate::system::{System, natural_ends};
 
-/// Places below zero at which a system is asked for a value, as shares of the box in which trajectories start.
-const BELOW: [f64; 3] = [0.07, 0.31, 0.83];
-
 impl Settings {
     /// Gives axes of which no end is known, and whose zero no path crosses downward in any of these systems, the end 0
     /// from below; cells narrow toward it, unless they are told how. Populations, concentrations and intensities are
-    /// positive: the other side has a steady state of its own, or the equations have no value there.
+    /// positive: the other side has a steady state of its own, or is left for ever, or the equations have no value there.
     pub(super) fn keep_to_one_side(&mut self, systems: &[Arc<dyn System>]) {
         let open = (0..self.axes.len()).filter(|&axis| self.axes[axis].ends == [None; 2]);
         for axis in positive_axes(systems, open.collect()) {
@@ -46,30 +43,16 @@ fn positive_axes(systems: &[Arc<dyn System>], mut axes: Vec<usize>) -> Vec<usize
     }
 }
 
-/// Whether zero of an axis is a natural end from above where these axes are positive, and no state below is one of the
-/// same motion.
+/// Whether zero of an axis is a natural end from above where these axes are positive. Nothing then comes back from the
+/// positive side, whatever there is below.
 fn stays_positive(system: &dyn System, axis: usize, positive: &[usize]) -> bool {
     let box_of = |other: usize| {
         let (low, high) = pilot_box([None; 2]);
         (if positive.contains(&other) { 0.0 } else { low }, high)
     };
     let mut ranges: Vec<(f64, f64)> = (0..system.dimension()).map(box_of).collect();
-    let above = natural_ends(system, axis, &ranges)[0];
-    ranges[axis] = (pilot_box([None; 2]).0, 0.0);
-    above && (natural_ends(system, axis, &ranges)[1] || has_no_value(system, axis, &ranges))
-}
-
-/// Whether the equation of an axis, or a noise on it, has no value anywhere in its range, in the middle of the others.
-fn has_no_value(system: &dyn System, axis: usize, ranges: &[(f64, f64)]) -> bool {
-    BELOW.iter().all(|share| {
-        let middle = ranges.iter().map(|&(low, high)| 0.5 * (low + high));
-        let mut state: Vec<f64> = middle.collect();
-        let (low, high) = ranges[axis];
-        state[axis] = low + share * (high - low);
-        let noises = system.noises().iter().filter(|noise| noise.axis == axis);
-        let mut values = noises.map(|noise| noise.at(0.0, &state));
-        !system.drift_at(0.0, &state)[axis].is_finite() || values.any(|value| !value.is_finite())
-    })
+    ranges[axis].0 = 0.0;
+    natural_ends(system, axis, &ranges)[0]
 }
 
 #[cfg(test)]
@@ -104,7 +87,8 @@ mod tests {
         // Where y may be negative it carries x across zero, and there is no such power.
         assert_eq!(positive(["y - x", "x - y"], ["0.2 x", "0.1"]), NONE);
         assert_eq!(positive([birth, "x - y"], ["0.2 sqrt(x)", "0.1"]), NONE);
-        // A force at zero carries paths across it.
-        assert_eq!(positive(["0.1 - x", "x - y"], ["0.2 x", "0.1"]), NONE);
+        // A force at zero carries paths across it, one way.
+        assert_eq!(positive(["0.1 - x", "x - y"], ["0.2 x", "0.1"]), [0]);
+        assert_eq!(positive(["-0.1 - x", "x - y"], ["0.2 x", "0.1"]), NONE);
     }
 }

@@ -393,7 +393,7 @@ fn equations_of_other_languages_and_of_other_scales() {
         assert_refused(TYPED, "[system.parameters]", &bounds, &words);
     }
     // Beyond the bound that does not hold paths run away, before any domain is known.
-    refused(RUNNING_AWAY.to_owned(), "a.toml", &["`x` does not stay within its bound -1", "a.toml:9:5"]);
+    refused(RUNNING_AWAY, "a.toml", &["`x` does not stay within its bound -1", "a.toml:9:5"]);
     let text = TYPED.replace("[system.equations]", "[equations]");
     refused(text, "a.toml", &["did you mean `system.equations`?"]);
 }

@@ -323,8 +323,8 @@ fn a_state_that_cannot_cross_zero_is_looked_at_on_the_positive_side() {
     );
     let given = prepared(&["cells.x={from=0.0001, to=4}"]);
     assert_eq!(given.axes[0].range(), Some((0.0001, 4.0)));
-    // Immigration carries paths across zero.
-    let carried = text.replace("a x - x^2", "0.1 + a x - x^3");
+    // A harvest carries paths across zero.
+    let carried = text.replace("a x - x^2", "-0.1 + a x - x^3");
     let carried = parse(&carried, &[]).unwrap().prepare(&Cancellation::new());
     let notes = carried.unwrap().settings.chosen;
     assert!(
