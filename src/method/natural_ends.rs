@@ -3,6 +3,7 @@
 
 use crate::continuation::Finding;
 use crate::space::CellSpace;
+use crate::system::{System, is_left};
 
 /// Mass in the cells beside an end that is worth a finding.
 const LIMIT: f64 = 1e-3;
@@ -11,8 +12,14 @@ const LIMIT: f64 = 1e-3;
 /// of the grid makes of it.
 const READ: [usize; 2] = [2, 6];
 
-/// What is said of the ends at which noise dies; `masses` are those of all cells.
-pub(super) fn findings(space: &CellSpace, masses: &[f64], natural: &[[bool; 2]]) -> Vec<Finding> {
+/// What is said of the ends at which noise dies; `masses` are those of all cells. Where drift leads away from an end
+/// nothing is absorbed there, however steep the density is that the cells show beside it.
+pub(super) fn findings(
+    system: &dyn System,
+    space: &CellSpace,
+    masses: &[f64],
+    natural: &[[bool; 2]],
+) -> Vec<Finding> {
     let mut found = Vec::new();
     for (axis, ends) in natural.iter().enumerate() {
         let cells = &space.axes()[axis];
@@ -39,7 +46,8 @@ pub(super) fn findings(space: &CellSpace, masses: &[f64], natural: &[[bool; 2]])
             };
             let [near, far] = READ.map(place);
             let exponent = (far.1 - near.1) / (far.0 - near.0);
-            found.push(if exponent <= -1.0 {
+            let is_absorbed = exponent <= -1.0 && !is_left(system, axis, &space.ranges(), end == 1);
+            found.push(if is_absorbed {
                 Finding::Absorbed { axis, at, exponent }
             } else {
                 Finding::NaturalEnd { axis, mass, at }
@@ -53,9 +61,10 @@ pub(super) fn findings(space: &CellSpace, masses: &[f64], natural: &[[bool; 2]])
 mod tests {
     use super::*;
     use crate::space::{Axis, Grading};
+    use crate::system::{Interpretation, TypedModel};
 
-    /// What is said of p ~ x^ν on (0, 1), over cells that narrow toward zero, beside a uniform axis.
-    fn told(power: f64, is_mirrored: bool) -> Vec<Finding> {
+    /// What is said of p ~ x^ν on (0, 1), over cells that narrow toward zero, beside a uniform axis, under this drift.
+    fn told(drift: &str, power: f64, is_mirrored: bool) -> Vec<Finding> {
         let grading = Grading {
             at: vec![f64::from(is_mirrored)],
             smallest: 1e-4,
@@ -73,15 +82,22 @@ mod tests {
             .collect();
         let end = usize::from(is_mirrored);
         let natural = [[end == 0, end == 1], [false; 2]];
-        findings(&space, &masses, &natural)
+        let typed = TypedModel::new("typed", "A typed system", ["x", "y"])
+            .with_equation("x", drift)
+            .with_equation("y", "-y")
+            .with_noise("x", ["x (1 - x)"])
+            .with_noise("y", ["0.2"])
+            .with_interpretation(Interpretation::Ito);
+        let system = typed.build().unwrap().system_with(&[]).unwrap();
+        findings(system.as_ref(), &space, &masses, &natural)
     }
 
     #[test]
     fn the_power_of_the_distance_tells_whether_all_mass_ends_there() {
-        assert_eq!(told(1.0, false), []);
+        assert_eq!(told("0", 1.0, false), []);
         for is_mirrored in [false, true] {
             let end = f64::from(is_mirrored);
-            let found = told(-0.9, is_mirrored);
+            let found = told("0", -0.9, is_mirrored);
             assert!(
                 matches!(found[..], [Finding::NaturalEnd { axis: 0, at, .. }] if at == end),
                 "{found:?}"
@@ -92,11 +108,15 @@ mod tests {
                     at,
                     exponent,
                 },
-            ] = told(-1.2, is_mirrored)[..]
+            ] = told("0", -1.2, is_mirrored)[..]
             else {
                 panic!("not absorbed");
             };
             assert!(at == end && (exponent + 1.2).abs() < 1e-9, "{exponent}");
+            // Immigration leads away from either end.
+            let found = told("0.01 (1 - 2 x)", -1.2, is_mirrored);
+            let is_natural = matches!(found[..], [Finding::NaturalEnd { .. }]);
+            assert!(is_natural, "{found:?}");
         }
     }
 }

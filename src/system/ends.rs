@@ -30,17 +30,24 @@ pub(crate) fn natural_ends(system: &dyn System, axis: usize, ranges: &[(f64, f64
     [(from, -1.0), (to, 1.0)].map(|side| is_natural(system, axis, ranges, side))
 }
 
-/// Whether noise dies at an end, and drift does not lead out, wherever the other coordinates are.
-fn is_natural(
+/// Whether drift leads away from an end somewhere along it: nothing then stays there, though noise dies.
+pub(crate) fn is_left(
     system: &dyn System,
     axis: usize,
     ranges: &[(f64, f64)],
-    (at, outward): (f64, f64),
+    is_upper: bool,
 ) -> bool {
     let (from, to) = ranges[axis];
+    let (at, outward) = if is_upper { (to, 1.0) } else { (from, -1.0) };
+    let least = NOTHING * (to - from);
+    let mut states = states_at(axis, ranges, at);
+    states.any(|state| outward * system.drift_at(0.0, &state)[axis] < -least)
+}
+
+/// States at a place of an axis, wherever the other coordinates are.
+fn states_at(axis: usize, ranges: &[(f64, f64)], at: f64) -> impl Iterator<Item = Vec<f64>> {
     let others = u32::try_from(ranges.len() - 1).unwrap_or(0);
-    let places = LOOKS.len().pow(others);
-    (0..places).all(|place| {
+    (0..LOOKS.len().pow(others)).map(move |place| {
         let mut rest = place;
         let place_of = |(other, &(low, high)): (usize, &(f64, f64))| {
             if other == axis {
@@ -50,7 +57,19 @@ fn is_natural(
             rest /= LOOKS.len();
             low + share * (high - low)
         };
-        let mut state: Vec<f64> = ranges.iter().enumerate().map(place_of).collect();
+        ranges.iter().enumerate().map(place_of).collect()
+    })
+}
+
+/// Whether noise dies at an end, and drift does not lead out, wherever the other coordinates are.
+fn is_natural(
+    system: &dyn System,
+    axis: usize,
+    ranges: &[(f64, f64)],
+    (at, outward): (f64, f64),
+) -> bool {
+    let (from, to) = ranges[axis];
+    states_at(axis, ranges, at).all(|mut state| {
         let drift = outward * system.drift_at(0.0, &state)[axis];
         let noises = || system.noises().iter().filter(|noise| noise.axis == axis);
         let amplitude =

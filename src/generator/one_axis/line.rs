@@ -67,7 +67,7 @@ impl Partition {
         };
         let least = 1.0 / (axis.to() - axis.from());
         for cell in 0..axis.count() {
-            for ends in cuts_toward(axis, cell, &surfaces, natural).windows(2) {
+            for ends in cuts_toward(system, axis, cell, &surfaces, natural).windows(2) {
                 line.add(system, &rule, (ends[0], ends[1]), least, MOST_HALVINGS)?;
             }
         }

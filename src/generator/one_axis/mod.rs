@@ -200,7 +200,7 @@ fn integrate(
     for cell in 0..count {
         let mut found = Integrals::default();
         let edge = axis.edges()[cell];
-        let cuts = cuts_toward(axis, cell, &surfaces, natural);
+        let cuts = cuts_toward(system, axis, cell, &surfaces, natural);
         if let (0, Some(exponent)) = (cell, ends[0].filter(|one| one.is_finite())) {
             let (from, level) = (cuts[0], walk.exponent);
             found.add_power(level, density(from), exponent, from - edge, (0.0, 1.0));
@@ -308,6 +308,38 @@ mod tests {
         let system = genes(0.0, 0.5).system_with(&[]).unwrap();
         let axis = Axis::uniform(0.0, 1.0, 10).unwrap();
         assert!(one_axis(system.as_ref(), &axis).is_none());
+    }
+
+    #[test]
+    fn a_density_that_falls_faster_than_any_power_at_a_natural_end_has_all_its_mass() {
+        // Decay with immigration, x' = c - a x + s x ξ in Itô's reading: 1/x has a gamma density, of the shape
+        // 1 + 2a/s² and the rate 2c/s². All of it lies far inside the first of few cells, or across many.
+        let (a, s) = (0.5, 0.3);
+        for (c, to) in [(1e-3, 1.0), (1e-3, 0.02), (0.4, 8.0)] {
+            let typed = TypedModel::new("immigration", "Immigration", ["x"])
+                .with_equation("x", format!("{c} - {a} x"))
+                .with_noise("x", [format!("{s} x")])
+                .with_interpretation(Interpretation::Ito);
+            let system = typed.build().unwrap().system_with(&[]).unwrap();
+            let axis = Axis::uniform(0.0, to, 40).unwrap();
+            let found = one_axis(system.as_ref(), &axis).unwrap();
+            assert_eq!(found.ends[0], Some(f64::INFINITY));
+            let (shape, rate) = (1.0 + 2.0 * a / (s * s), 2.0 * c / (s * s));
+            let exact = statrs::distribution::InverseGamma::new(shape, rate).unwrap();
+            for (cell, mass) in found.masses.iter().enumerate() {
+                let [low, high] = [0, 1].map(|side| exact.cdf(axis.edges()[cell + side]));
+                assert!(
+                    (mass - (high - low)).abs() < 1e-8,
+                    "{c} {cell}: {mass} {}",
+                    high - low
+                );
+            }
+            assert!(
+                (found.moments.0 / (c / a) - 1.0).abs() < 1e-6,
+                "{:?}",
+                found.moments
+            );
+        }
     }
 
     #[test]

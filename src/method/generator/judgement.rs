@@ -58,7 +58,9 @@ impl GeneratorSession {
         reporter.escaping(share);
         let masses = cell_masses(solved.system.as_ref(), space, unknowns);
         reporter.edge_mass(&masses, &self.source.closed_ends);
-        for finding in natural_ends::findings(space, &masses, &self.source.natural_ends) {
+        let system = solved.system.as_ref();
+        let natural = &self.source.natural_ends;
+        for finding in natural_ends::findings(system, space, &masses, natural) {
             if matches!(finding, Finding::Absorbed { .. }) {
                 reporter.no_steady_state(finding);
                 return Ok((Solution::without_density(reporter.report), None));
