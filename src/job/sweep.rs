@@ -10,7 +10,6 @@ use crate::continuation::{
     sweep_shard,
 };
 use crate::figure::{Figure, Figures};
-use crate::method::Cost;
 use crate::run::{
     Ending, Gathered, JobFolder, JournalledSource, Layout, Manifest, PhaseSeconds, RunError,
     RunFolder, StoredRun, looks_file, sweep_files, warnings_of_points,
@@ -157,7 +156,7 @@ impl Job for SweepJob<'_> {
         let cells = self.sweep.problem.space().n_cells();
         context.say(&format!(
             "{words}, {cells} cells{}",
-            long_factorisation(self.sweep)
+            self.sweep.long_factorisation()
         ));
         self.source = Some(source);
         Ok(true)
@@ -300,21 +299,6 @@ impl From<SweepError> for JobError {
             },
             error => Self::Sweep(error),
         }
-    }
-}
-
-/// Seconds of a factorisation from which it is told before a sweep begins.
-const LONG: f64 = 2.0;
-
-/// What is said of factorisations that take long.
-fn long_factorisation(sweep: &Sweep) -> String {
-    let problem = &sweep.problem;
-    match sweep.settings.method.chosen().cost(problem.space()) {
-        Ok(Cost::Generator(cost)) if cost.factorisation_seconds() > LONG => format!(
-            "; a factorisation takes about {:.0} s on two cores, and fewer cells less (`cells.accuracy`)",
-            cost.factorisation_seconds()
-        ),
-        _ => String::new(),
     }
 }
 

@@ -3,7 +3,7 @@
 
 use crate::continuation::Finding;
 use crate::space::CellSpace;
-use crate::system::{System, is_left};
+use crate::system::{System, largest_power, may_stay};
 
 /// Mass in the cells beside an end that is worth a finding.
 const LIMIT: f64 = 1e-3;
@@ -35,6 +35,11 @@ pub(super) fn findings(
                 0 => number,
                 _ => cells.count() - 1 - number,
             };
+            if let (true, Some(exponent)) = (ends[end], absorbing_power(system, space, (axis, end)))
+            {
+                found.push(Finding::Absorbed { axis, at, exponent });
+                continue;
+            }
             let mass = along[from_end(0)];
             if !ends[end] || mass <= LIMIT {
                 continue;
@@ -46,7 +51,8 @@ pub(super) fn findings(
             };
             let [near, far] = READ.map(place);
             let exponent = (far.1 - near.1) / (far.0 - near.0);
-            let is_absorbed = exponent <= -1.0 && !is_left(system, axis, &space.ranges(), end == 1);
+            let is_absorbed =
+                exponent <= -1.0 && may_stay(system, &space.ranges(), natural, (axis, end));
             found.push(if is_absorbed {
                 Finding::Absorbed { axis, at, exponent }
             } else {
@@ -55,6 +61,16 @@ pub(super) fn findings(
         }
     }
     found
+}
+
+/// The exponent of the density beside an end of an axis where it is -1 or less wherever the other coordinates are.
+fn absorbing_power(
+    system: &dyn System,
+    space: &CellSpace,
+    (axis, end): (usize, usize),
+) -> Option<f64> {
+    let largest = largest_power(system, axis, &space.ranges(), end == 1);
+    largest.filter(|exponent| *exponent <= -1.0)
 }
 
 #[cfg(test)]
@@ -94,10 +110,12 @@ mod tests {
 
     #[test]
     fn the_power_of_the_distance_tells_whether_all_mass_ends_there() {
-        assert_eq!(told("0", 1.0, false), []);
+        // Between y = 0 and 1 the power beside either end is 2y - 2: the density tells what comes of it.
+        const BY_PLACE: &str = "x (1 - x) (1 - 2 x) y";
+        assert_eq!(told(BY_PLACE, 1.0, false), []);
         for is_mirrored in [false, true] {
             let end = f64::from(is_mirrored);
-            let found = told("0", -0.9, is_mirrored);
+            let found = told(BY_PLACE, -0.9, is_mirrored);
             assert!(
                 matches!(found[..], [Finding::NaturalEnd { axis: 0, at, .. }] if at == end),
                 "{found:?}"
@@ -108,11 +126,17 @@ mod tests {
                     at,
                     exponent,
                 },
-            ] = told("0", -1.2, is_mirrored)[..]
+            ] = told(BY_PLACE, -1.2, is_mirrored)[..]
             else {
                 panic!("not absorbed");
             };
             assert!(at == end && (exponent + 1.2).abs() < 1e-9, "{exponent}");
+            // Without drift it is -2 everywhere, whatever cells show.
+            let found = told("0", -0.9, is_mirrored);
+            let [Finding::Absorbed { exponent, .. }] = found[..] else {
+                panic!("{found:?}");
+            };
+            assert!((exponent + 2.0).abs() < 1e-5, "{exponent}");
             // Immigration leads away from either end.
             let found = told("0.01 (1 - 2 x)", -1.2, is_mirrored);
             let is_natural = matches!(found[..], [Finding::NaturalEnd { .. }]);

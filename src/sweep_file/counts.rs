@@ -91,6 +91,9 @@ impl Settings {
     /// Says which of the states that are cut into cells modes would carry, were they written as noise.
     fn tell_of_typed_noise(&mut self, systems: &[Arc<dyn System>]) {
         let kind = self.method.kind;
+        if self.family.model().noise_kind().is_coloured() {
+            return;
+        }
         for (axis, settings) in self.axes.iter().enumerate() {
             let is_noise = |system: &Arc<dyn System>| is_noise_with_memory(&**system, axis);
             if settings.is_cut(kind) && systems.iter().all(is_noise) {

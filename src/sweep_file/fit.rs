@@ -1,4 +1,5 @@
-//! Whether a sweep fits into the memory of the machine, and into what the system gives this process.
+//! Whether a sweep fits into the memory of the machine, and into what the system gives this process; and whether it
+//! takes long.
 
 use super::diagnostic::Diagnostic;
 use super::memory::{bytes_in_words, machine_memory};
@@ -7,6 +8,7 @@ use super::report::Report;
 use super::settings::{AxisSettings, Modes, Settings};
 use super::sweep::Sweep;
 use crate::density::BINS_OF_A_TURN;
+use crate::method::Cost;
 use crate::stationary::generator::RateError;
 
 /// Room that is tried for at least, in units of what a point takes: finer cells check what is located.
@@ -17,6 +19,23 @@ const SMALL_MACHINE: f64 = 2e9;
 const BESIDE: f64 = 1e8;
 /// Bytes that each thread takes: room for products of matrices (64 MiB), a heap of its own (as much), its stack.
 const A_THREAD: f64 = 1.5e8;
+
+/// Seconds of a factorisation from which it is told before a sweep begins.
+const LONG: f64 = 2.0;
+
+impl Sweep {
+    /// What is said of factorisations that take long, after what the method is; empty where none does.
+    pub(crate) fn long_factorisation(&self) -> String {
+        match self.settings.method.chosen().cost(self.problem.space()) {
+            Ok(Cost::Generator(cost)) if cost.factorisation_seconds() > LONG => format!(
+                "; a factorisation takes about {:.0} s on two cores, and fewer cells take less (`cells.accuracy`, or \
+                 `count`)",
+                cost.factorisation_seconds()
+            ),
+            _ => String::new(),
+        }
+    }
+}
 
 impl Settings {
     /// Unknowns along each axis as the method has it; a few modes where their number is left to the program.

@@ -54,6 +54,19 @@ impl Settings {
     fn remedy_of_range(&self, axis: usize) -> String {
         let (name, model) = (self.family.axis(axis), self.family.model());
         let ends = self.axes[axis].ends;
+        if ends == [None; 2] && self.positive(&[]).contains(&axis) {
+            return format!(
+                "no path crosses {name} = 0 downward, where its noise vanishes and its drift does not lead out: give \
+                 `cells.{name}.from = 0`, and the other end is found"
+            );
+        }
+        let is_unsaid = self.document.root.find(&["cells", name, "from"]).is_none();
+        if ends == [Some(0.0), None] && is_unsaid {
+            return format!(
+                "{name} was looked at from 0 on, as no path crosses {name} = 0 downward: give `cells.{name}.to = 0` for \
+                 the negative side, or `cells.{name}.to` with another end"
+            );
+        }
         let open = match ends {
             [Some(_), None] => "`to`".to_owned(),
             [None, Some(_)] => "`from`".to_owned(),

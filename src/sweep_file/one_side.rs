@@ -2,38 +2,102 @@
 
 use std::sync::Arc;
 
+use super::draft::MethodKind;
 use super::settings::{Grade, Settings};
 use crate::method::pilot_box;
 use crate::system::{System, natural_ends};
 
+/// Parts of the sweep at whose ends an axis is looked at.
+const PARTS: usize = 16;
+
 impl Settings {
-    /// Gives axes of which no end is known, and whose zero no path crosses downward in any of these systems, the end 0
-    /// from below; cells narrow toward it, unless they are told how. Populations, concentrations and intensities are
-    /// positive: the other side has a steady state of its own, or is left for ever, or the equations have no value there.
-    pub(super) fn keep_to_one_side(&mut self, systems: &[Arc<dyn System>]) {
+    /// Gives axes of which no end is known, and whose zero no path crosses downward anywhere along the sweep, the end 0
+    /// from below, and returns them. Populations, concentrations and intensities are positive: the other side has a
+    /// steady state of its own, or is left for ever, or the equations have no value there. Steps of trajectories may
+    /// overshoot such an end, so that the other methods are not given it.
+    pub(super) fn keep_to_one_side(&mut self, corners: &[Arc<dyn System>]) -> Vec<usize> {
+        if self.method.kind != MethodKind::Generator {
+            return Vec::new();
+        }
+        let kept = self.positive(corners);
+        for &axis in &kept {
+            self.axes[axis].ends[0] = Some(0.0);
+        }
+        kept
+    }
+
+    /// The axes of which no end is known that stay positive, next to where trajectories start.
+    pub(super) fn positive(&self, corners: &[Arc<dyn System>]) -> Vec<usize> {
         let open = (0..self.axes.len()).filter(|&axis| self.axes[axis].ends == [None; 2]);
-        for axis in positive_axes(systems, open.collect()) {
-            let settings = &mut self.axes[axis];
-            settings.ends[0] = Some(0.0);
-            if settings.grade == Grade::Even {
-                settings.grade = Grade::Auto;
-            }
+        let known = self.axes.iter().map(|axis| pilot_box(axis.ends));
+        positive_axes(
+            &self.with_systems_between(corners),
+            &known.collect::<Vec<_>>(),
+            open.collect(),
+        )
+    }
+
+    /// Opens the ends of those of the axes again that do not stay positive on the ranges that were found, and says
+    /// whether there were any.
+    pub(super) fn reopen(
+        &mut self,
+        kept: &mut Vec<usize>,
+        corners: &[Arc<dyn System>],
+        ranges: &[(f64, f64)],
+    ) -> bool {
+        let systems = self.with_systems_between(corners);
+        let holds = |axis: &usize| {
+            systems
+                .iter()
+                .all(|one| natural_ends(&**one, *axis, ranges)[0])
+        };
+        let (holding, wrong): (Vec<usize>, Vec<usize>) = kept.iter().partition(|axis| holds(axis));
+        for &axis in &wrong {
+            self.axes[axis].ends[0] = None;
+        }
+        *kept = holding;
+        !wrong.is_empty()
+    }
+
+    /// Says which axes are looked at on one side of zero alone; cells narrow toward it, where nothing was said of them.
+    pub(super) fn tell_of_one_side(&mut self, kept: &[usize]) {
+        for &axis in kept {
             let name = self.family.axis(axis);
+            let is_unsaid = self.document.root.find(&["cells", name, "grade"]).is_none();
+            if self.axes[axis].grade == Grade::Even && is_unsaid {
+                self.axes[axis].grade = Grade::Auto;
+            }
             self.chosen.push(format!(
-                "cells: {name} from 0, as no path crosses {name} = 0, where its noise vanishes and its drift does not \
-                 lead out; give `cells.{name}.from` or `to` for another side"
+                "cells: {name} from 0, as no path crosses {name} = 0 downward, where its noise vanishes and its drift \
+                 does not lead out; give `cells.{name}.from` or `to` for another side"
             ));
         }
     }
+
+    /// These systems, and others along the sweep.
+    fn with_systems_between(&self, corners: &[Arc<dyn System>]) -> Vec<Arc<dyn System>> {
+        let (from, to) = self.family.ends();
+        let places = (0..=PARTS).map(|part| from + (to - from) * part as f64 / PARTS as f64);
+        let between = places.filter_map(|place| self.family.at(place).ok());
+        corners.iter().cloned().chain(between).collect()
+    }
 }
 
-/// Those of some axes that stay positive in all the systems while all of them do.
-fn positive_axes(systems: &[Arc<dyn System>], mut axes: Vec<usize>) -> Vec<usize> {
+/// Those of some axes that stay positive in all the systems while all of them do, on these ranges of the others.
+fn positive_axes(
+    systems: &[Arc<dyn System>],
+    known: &[(f64, f64)],
+    mut axes: Vec<usize>,
+) -> Vec<usize> {
     loop {
         let stays = |axis: &usize| {
+            let mut ranges = known.to_vec();
+            for &positive in &axes {
+                ranges[positive].0 = 0.0;
+            }
             systems
                 .iter()
-                .all(|one| stays_positive(&**one, *axis, &axes))
+                .all(|one| natural_ends(&**one, *axis, &ranges)[0])
         };
         let those: Vec<usize> = axes.iter().copied().filter(stays).collect();
         if those.len() == axes.len() {
@@ -41,18 +105,6 @@ fn positive_axes(systems: &[Arc<dyn System>], mut axes: Vec<usize>) -> Vec<usize
         }
         axes = those;
     }
-}
-
-/// Whether zero of an axis is a natural end from above where these axes are positive. Nothing then comes back from the
-/// positive side, whatever there is below.
-fn stays_positive(system: &dyn System, axis: usize, positive: &[usize]) -> bool {
-    let box_of = |other: usize| {
-        let (low, high) = pilot_box([None; 2]);
-        (if positive.contains(&other) { 0.0 } else { low }, high)
-    };
-    let mut ranges: Vec<(f64, f64)> = (0..system.dimension()).map(box_of).collect();
-    ranges[axis].0 = 0.0;
-    natural_ends(system, axis, &ranges)[0]
 }
 
 #[cfg(test)]
@@ -70,7 +122,7 @@ mod tests {
             .with_noise("y", [noises[1]])
             .with_interpretation(Interpretation::Ito);
         let system = typed.build().unwrap().system_with(&[]).unwrap();
-        positive_axes(&[system], vec![0, 1])
+        positive_axes(&[system], &[pilot_box([None; 2]); 2], vec![0, 1])
     }
 
     #[test]

@@ -127,8 +127,12 @@ impl Settings {
         let model = self.family.model().clone();
         let system = |values| self.family.framed(model.system(&values));
         let ends: Vec<Arc<dyn System>> = corners.map(system).collect();
-        self.keep_to_one_side(&ends);
-        let ranges = self.find_ranges(&ends, cancellation)?;
+        let mut kept = self.keep_to_one_side(&ends);
+        let mut ranges = self.find_ranges(&ends, cancellation)?;
+        while self.reopen(&mut kept, &ends, &ranges) {
+            ranges = self.find_ranges(&ends, cancellation)?;
+        }
+        self.tell_of_one_side(&kept);
         for (axis, range) in self.axes.iter_mut().zip(ranges) {
             axis.ends = [range.0, range.1].map(Some);
         }

@@ -89,7 +89,7 @@ impl Settings {
         diagnostic.at(place.as_ref(), hazard.kind.words())
     }
 
-    /// The contract of built-in models, at both ends of the sweep.
+    /// What built-in models promise, tried of the equations of a file at both ends of the sweep.
     pub(super) fn check_contract(&self, ranges: &[(f64, f64)]) -> Result<(), Report> {
         let (from, to) = self.family.ends();
         for end in [from, to] {

@@ -58,7 +58,7 @@ pub use coloured::{ColouredNoiseError, NoiseKind};
 pub(crate) use description::PHASE_AXIS;
 pub use description::{AxisDescription, ParameterDescription, ParameterRange};
 pub(crate) use enclosed::Enclosed;
-pub(crate) use ends::{closed_ends, is_left, natural_ends};
+pub(crate) use ends::{closed_ends, largest_power, may_stay, natural_ends};
 pub use facts::{Facts, PeriodicDrift, SwitchingSurface, Symmetry};
 pub use family::Family;
 pub use linear::{FixedPointFault, Linearised};

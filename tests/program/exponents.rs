@@ -362,7 +362,9 @@ fn along_a_density_linear_equations_are_exact_and_their_box_and_cells_do_not_mat
     let file = file.replace("measures_exponent", "measures_divergence");
     let file = file.replace("s x", "s").replace("-0.1", "0.5");
     room.write("a.toml", file.replace("to = 0.1", "to = 4.5"));
-    room.done("sweep a.toml --out run cells.y.count=24 cells.x.count=24");
+    // So few cells leave a density with a negative part, of which exponents take no notice.
+    room.solved("sweep a.toml --out run cells.y.count=24 cells.x.count=24")
+        .says(&["this proves little"]);
     for row in &room.table("run/points.csv").0 {
         let [b, exponent, divergence] = row.numbers(["b", "exponent", "divergence"]);
         // The eigenvalues of x'' + b x' + x = 0, and their sum.

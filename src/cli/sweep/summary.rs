@@ -55,8 +55,8 @@ fn no_change(result: &SweepResult) -> String {
     let negative = result.points.iter().filter(|point| findings(point)).count();
     if negative > 0 {
         text += &format!(
-            "this proves little: at {negative} of {} values densities have a negative part too large for their shape to \
-             be read, and more cells are needed\n",
+            "this proves little: at {negative} of {} values densities have a negative part too large for their shape \
+             to be read, and more cells are needed\n",
             result.points.len()
         );
     }

@@ -56,9 +56,9 @@ pub(super) struct SlopeAt {
 }
 
 impl Partition {
-    /// All of an axis, of which `natural` ends are such that the noise dies there; `None` where drift or noise are not
+    /// All of an axis with these exponents at natural ends, where the noise dies; `None` where drift or noise are not
     /// finite, or the noise vanishes elsewhere.
-    pub(super) fn new(system: &dyn System, axis: &Axis, natural: [bool; 2]) -> Option<Self> {
+    pub(super) fn new(system: &dyn System, axis: &Axis, natural: [Option<f64>; 2]) -> Option<Self> {
         let rule = Rule::new();
         let surfaces = surfaces(system);
         let mut line = Self {

@@ -188,7 +188,6 @@ fn integrate(
     let (mut logs, mut firsts, mut seconds) =
         (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
     let surfaces = surfaces(system);
-    let natural = ends.map(|end| end.is_some());
     // The density over exp(exponent).
     let density = |place: f64| look(system, &[place; LANES]).1[0].recip();
     let mut walk = Walk {
@@ -200,7 +199,7 @@ fn integrate(
     for cell in 0..count {
         let mut found = Integrals::default();
         let edge = axis.edges()[cell];
-        let cuts = cuts_toward(system, axis, cell, &surfaces, natural);
+        let cuts = cuts_toward(system, axis, cell, &surfaces, ends);
         if let (0, Some(exponent)) = (cell, ends[0].filter(|one| one.is_finite())) {
             let (from, level) = (cuts[0], walk.exponent);
             found.add_power(level, density(from), exponent, from - edge, (0.0, 1.0));
@@ -314,8 +313,13 @@ mod tests {
     fn a_density_that_falls_faster_than_any_power_at_a_natural_end_has_all_its_mass() {
         // Decay with immigration, x' = c - a x + s x ξ in Itô's reading: 1/x has a gamma density, of the shape
         // 1 + 2a/s² and the rate 2c/s². All of it lies far inside the first of few cells, or across many.
-        let (a, s) = (0.5, 0.3);
-        for (c, to) in [(1e-3, 1.0), (1e-3, 0.02), (0.4, 8.0)] {
+        for (c, a, s, to) in [
+            (1e-3, 0.5, 0.3, 1.0),
+            (1e-3, 0.5, 0.3, 0.02),
+            (0.4, 0.5, 0.3, 8.0),
+            (1.1e-3, 0.5, 0.005, 1.0),
+            (0.14, 1.0, 0.007, 16.0),
+        ] {
             let typed = TypedModel::new("immigration", "Immigration", ["x"])
                 .with_equation("x", format!("{c} - {a} x"))
                 .with_noise("x", [format!("{s} x")])

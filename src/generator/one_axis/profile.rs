@@ -24,7 +24,7 @@ pub fn profile(
     found: &OneAxis,
     centre: Option<f64>,
 ) -> Option<Profile> {
-    let line = Partition::new(system, axis, found.ends.map(|end| end.is_some()))?;
+    let line = Partition::new(system, axis, found.ends)?;
     let samples = line.samples();
     Some(Profile {
         extrema: line.extrema(&samples, found.log_integral),

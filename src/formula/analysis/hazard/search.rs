@@ -59,8 +59,8 @@ pub(super) fn search(
             None => thin.push(here),
         }
     }
-    // What is left are single points or surfaces, such as the edge of a branch or the zero of a square. A pole is
-    // between two doubles: no state fails, but the values next to it have no bound.
+    // What is left are single points or surfaces, such as the edge of a branch or the zero of a sum of squares. A pole
+    // is between two doubles: no state fails, but the values next to it have no bound.
     let near = thin.into_iter().find(|place| match kind {
         HazardKind::Pole => trial.is_needed_at(place),
         _ => trial.is_next_to_zero(place),
