@@ -26,6 +26,8 @@ const MOST_CHANGES: usize = 40;
 /// Most times that the box is shrunk toward an end that is given, or a point, by 32 each time where all visits are in
 /// one cell.
 const MOST_SHRUNK: usize = 12;
+/// A box this short, against the distance from zero, is a point.
+const TINY: f64 = 1e-11;
 /// Most steps of each trajectory in all boxes together: those of ten that take the most that one box may.
 const MOST_STEPS: usize = 2_000_000;
 
@@ -117,9 +119,6 @@ pub(crate) fn automatic_ranges(
     for (number, system) in systems.iter().enumerate() {
         let system = between_given_ends(system, known);
         let found = ranges_of((number, system.as_ref()), known, seed, cancellation)?;
-        let Some(found) = found else {
-            continue;
-        };
         hull = Some(match hull {
             None => found,
             Some(hull) => hull
@@ -129,9 +128,15 @@ pub(crate) fn automatic_ranges(
                 .collect(),
         });
     }
-    let mut hull = hull.unwrap_or_else(|| known.iter().copied().map(pilot_box).collect());
-    alike(systems, known, &mut hull);
-    let rounded = hull.iter().zip(known);
+    if let Some(hull) = &mut hull {
+        // A point of all the systems has no length of its own.
+        let length = PILOT_BOX.1 - PILOT_BOX.0;
+        for range in hull.iter_mut().filter(|range| range.0 == range.1) {
+            *range = (range.0 - 0.5 * length, range.1 + 0.5 * length);
+        }
+        alike(systems, known, hull);
+    }
+    let rounded = hull.iter().flatten().zip(known);
     Ok(rounded
         .map(|(&found, &known)| with_known(outward(found), known))
         .collect())
@@ -157,14 +162,14 @@ fn alike(systems: &[Arc<dyn System>], known: &[KnownEnds], hull: &mut [(f64, f64
     }
 }
 
-/// The ranges of one system; `None` where all trajectories end in one point, which says nothing of ranges. The solve
-/// tells that there is no density.
+/// The ranges of one system. An axis along which all trajectories end in one point has both ends there, and the others
+/// hold what was visited; the solve tells that there is no density.
 fn ranges_of(
     (number, system): (usize, &dyn System),
     known: &[KnownEnds],
     seed: u64,
     cancellation: &Cancellation,
-) -> Result<Option<Vec<(f64, f64)>>, RangeError> {
+) -> Result<Vec<(f64, f64)>, RangeError> {
     let (mut steps, mut leaving) = (0, 0);
     let mut shrunk = vec![0; known.len()];
     let mut ranges: Vec<(f64, f64)> = known.iter().copied().map(pilot_box).collect();
@@ -213,11 +218,26 @@ fn ranges_of(
             for axis in free().filter(|&axis| ends_there(known[axis], shrunk[axis])) {
                 found[axis] = pilot_box(known[axis]);
             }
-            return Ok(Some(found));
+            return Ok(found);
         }
-        let is_point = |axis: usize| known[axis] == [None; 2] && shrunk[axis] >= MOST_SHRUNK;
-        if narrow.iter().any(|&axis| is_point(axis)) {
-            return Ok(None);
+        let is_point = |axis: usize| {
+            let (from, to) = ranges[axis];
+            let is_tiny =
+                shrunk[axis] >= MOST_SHRUNK || to - from <= TINY * from.abs().max(to.abs());
+            known[axis] == [None; 2] && is_tiny
+        };
+        let points: Vec<usize> = narrow
+            .iter()
+            .copied()
+            .filter(|&axis| is_point(axis))
+            .collect();
+        if !points.is_empty() {
+            let mut found = widened(system, &visited, known);
+            for axis in points {
+                let middle = 0.5 * (visited[axis].0 + visited[axis].1);
+                found[axis] = (middle, middle);
+            }
+            return Ok(found);
         }
         for axis in narrow {
             ranges[axis] = doubled(visited[axis], known[axis]);

@@ -147,6 +147,19 @@ fn a_system_whose_paths_end_in_a_point_says_nothing_of_ranges() {
     };
     let above = ranges(&[oscillator(1.2)]);
     assert_eq!(ranges(&[oscillator(0.2), oscillator(1.2)]), above);
-    let at_rest = ranges(&[oscillator(0.2)]);
-    assert_eq!(at_rest, [pilot_box([None; 2]); 2]);
+    // Nor does it of another axis, and a point may lie anywhere: here at x = 5, beside a state of deviation 0.5.
+    let beside = |s: f64| {
+        let typed = TypedModel::new("beside", "A point beside noise", ["x", "y"])
+            .with_equation("x", "5 - x")
+            .with_equation("y", "-y")
+            .with_noise("x", [format!("{s} (x - 5)")])
+            .with_noise("y", ["0.707"])
+            .with_interpretation(crate::system::Interpretation::Ito);
+        typed.build().unwrap().system_with(&[]).unwrap()
+    };
+    let [x, y] = ranges(&[beside(0.2)])[..] else {
+        panic!("two axes");
+    };
+    assert!(x.0 < 4.5 && x.1 > 5.5 && x.1 - x.0 < 3.0, "{x:?}");
+    assert!(y.1 > 2.5 && y.1 < 5.0, "{y:?}");
 }
