@@ -1,5 +1,6 @@
 //! Reflections that a system has, found and proved by trial: drift and noise at states and at their images.
 
+use super::ends::closed_ends;
 use super::{LANES, Lanes, Symmetry, System};
 
 /// Relative difference of drift or noise at a state and its image that is rounding.
@@ -25,7 +26,8 @@ pub(crate) fn symmetry_over_a_period(system: &dyn System, ends: &[(f64, f64)]) -
 /// The reflection, together with half a turn of an axis where one is given.
 fn symmetry(system: &dyn System, ends: &[(f64, f64)], shifted: Option<usize>) -> Option<Symmetry> {
     if let Some(declared) = system.facts().symmetry.clone() {
-        return holds(system, &declared, ends, shifted).then_some(declared);
+        let is_there = holds(system, &declared, ends, shifted) && fits(system, &declared, ends);
+        return is_there.then_some(declared);
     }
     let axes = system.dimension();
     let middle: Vec<f64> = ends.iter().map(|(from, to)| 0.5 * (from + to)).collect();
@@ -38,7 +40,7 @@ fn symmetry(system: &dyn System, ends: &[(f64, f64)], shifted: Option<usize>) ->
                 centre: centre.clone(),
                 reflected: (0..axes).map(|axis| subset >> axis & 1 == 1).collect(),
             };
-            if holds(system, &candidate, ends, shifted) {
+            if holds(system, &candidate, ends, shifted) && fits(system, &candidate, ends) {
                 found.push(candidate);
             }
         }
@@ -47,6 +49,23 @@ fn symmetry(system: &dyn System, ends: &[(f64, f64)], shifted: Option<usize>) ->
     // The first of those with the most axes: about the origin where both serve.
     let most = found.iter().map(reflected).max()?;
     found.into_iter().find(|one| reflected(one) == most)
+}
+
+/// Whether ends that nothing passes are mirror images of each other: on one side of zero alone, where no path crosses
+/// it, a density is no image of itself, though the equations are.
+fn fits(system: &dyn System, symmetry: &Symmetry, ends: &[(f64, f64)]) -> bool {
+    let turns = &system.facts().turns;
+    let mut reflected = (0..ends.len()).filter(|axis| symmetry.reflected[*axis]);
+    reflected.all(|axis| {
+        let (from, to) = ends[axis];
+        let is_middle =
+            || (0.5 * (from + to) - symmetry.centre[axis]).abs() <= ROUNDING * (to - from);
+        turns.contains_key(&axis)
+            || match closed_ends(system, axis, ends) {
+                [false, false] => true,
+                [low, high] => low && high && is_middle(),
+            }
+    })
 }
 
 /// Places along a turn at which the drift along an axis is looked at for a change of its sign.
@@ -194,6 +213,24 @@ fn agree(a: &Lanes, b: &Lanes) -> bool {
 mod tests {
     use super::*;
     use crate::system::{Facts, Noise};
+
+    #[test]
+    fn on_one_side_of_a_zero_that_no_path_crosses_nothing_is_its_own_image() {
+        let typed = crate::system::TypedModel::new("typed", "A typed system", ["x", "y"])
+            .with_equation("x", "0.25 x - x^3")
+            .with_equation("y", "x - y")
+            .with_noise("x", ["0.3 x"])
+            .with_noise("y", ["0.2"])
+            .with_interpretation(crate::system::Interpretation::Ito);
+        let system = typed.build().unwrap().system_with(&[]).unwrap();
+        let reflected = |from: f64| {
+            let found = proved_symmetry(&*system, &[(from, 2.0), (-3.0, 3.0)]);
+            found.map(|one| one.reflected)
+        };
+        assert_eq!(reflected(-2.0), Some(vec![true; 2]));
+        assert_eq!(reflected(-1.9), Some(vec![true; 2]));
+        assert_eq!(reflected(0.0), None);
+    }
 
     /// x' = y, y' = -y - x³ + lean + noise, which declares whatever it is told to.
     struct Leaning {
