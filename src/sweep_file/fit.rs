@@ -17,8 +17,9 @@ const TRIED: f64 = 3.0;
 const SMALL_MACHINE: f64 = 2e9;
 /// Bytes beside it: what is read and drawn.
 const BESIDE: f64 = 1e8;
-/// Bytes that each thread takes: room for products of matrices (64 MiB), a heap of its own (as much), its stack.
-const A_THREAD: f64 = 1.5e8;
+/// Bytes that each thread takes: room for products of matrices (64 MiB), a heap of its own (as much, and as much again
+/// while it is laid out at a multiple of its size), its stack.
+const A_THREAD: f64 = 2.2e8;
 
 /// Seconds of a factorisation from which it is told before a sweep begins.
 const LONG: f64 = 2.0;
