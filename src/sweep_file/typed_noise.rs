@@ -16,8 +16,7 @@ pub(super) fn is_noise_with_memory(system: &dyn System, axis: usize) -> bool {
         .map(|look| {
             let state = state_at(system, look);
             let rate = -system.drift_at(0.0, &state)[axis] / state[axis];
-            let amplitudes = system.noises().iter().map(|noise| noise.at(0.0, &state));
-            [rate, amplitudes.map(|one| one * one).sum()]
+            [rate, system.intensity_at(axis, 0.0, &state)]
         })
         .collect();
     let first = readings[0];

@@ -103,8 +103,7 @@ pub(crate) fn largest_power(
         let look = |distance: f64| {
             let mut state = state.clone();
             state[axis] = at + inward * distance;
-            let noises = system.noises().iter().filter(|noise| noise.axis == axis);
-            let intensity: f64 = noises.map(|noise| noise.at(0.0, &state).powi(2)).sum();
+            let intensity = system.intensity_at(axis, 0.0, &state);
             let drift = inward * system.drift_at(0.0, &state)[axis];
             (2.0 * drift * distance / intensity, intensity)
         };

@@ -19,7 +19,8 @@ Examples:
   pbif explore sweeps/coulomb_fc.toml --open                   the same page, solving live
 
 Exit status: 0 done; 1 finished, but some row is unresolved, did not converge or has no steady state,
-or densities are too negative for their shape; 2 bad usage or input, or a folder that cannot be written to; 70 a fault of pbif itself; 130 interrupted.
+or densities are too negative for their shape; 2 bad usage or input, or a folder that cannot be
+written to; 70 a fault of pbif itself; 130 interrupted.
 
 Results are never overwritten: an earlier run in the same folder is kept in its folder previous/1,
 previous/2, and so on.";
@@ -43,7 +44,8 @@ place of those of the run, whose earlier version is kept below its folder previo
 run is left as it is.
 
 Exit status: 0 done; 1 finished, but some row is unresolved, did not converge or has no steady
-state, or densities are too negative for their shape, or the run had been interrupted; 2 bad usage or input, nothing written.";
+state, or densities are too negative for their shape, or the run had been interrupted;
+2 bad usage or input, nothing written.";
 
 pub(super) const CURVE_EXAMPLES: &str = "\
 Examples:

@@ -18,7 +18,8 @@ What the shards have solved is taken from them; what only the whole asks for (a 
 like any other, the same as that of a sweep in one piece within the solver's tolerance. Job scripts: docs/cluster.md
 
 Exit status: 0 done; 1 finished, but some row is unresolved, did not converge or has no steady state, or densities are too
-negative for their shape, or shards are missing (--partial); 2 bad usage, or shards are missing, nothing written; 130 interrupted: the same command goes on.";
+negative for their shape, or shards are missing (--partial); 2 bad usage, or shards are missing, nothing written;
+130 interrupted: the same command goes on.";
 
 /// Shards that are put together.
 #[derive(Debug, Args)]

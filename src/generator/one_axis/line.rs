@@ -56,9 +56,13 @@ pub(super) struct SlopeAt {
 }
 
 impl Partition {
-    /// All of an axis with these exponents at natural ends, where the noise dies; `None` where drift or noise are not
+    /// All of an axis with these `exponents` at natural ends, where the noise dies; `None` where drift or noise are not
     /// finite, or the noise vanishes elsewhere.
-    pub(super) fn new(system: &dyn System, axis: &Axis, natural: [Option<f64>; 2]) -> Option<Self> {
+    pub(super) fn new(
+        system: &dyn System,
+        axis: &Axis,
+        exponents: [Option<f64>; 2],
+    ) -> Option<Self> {
         let rule = Rule::new();
         let surfaces = surfaces(system);
         let mut line = Self {
@@ -67,7 +71,7 @@ impl Partition {
         };
         let least = 1.0 / (axis.to() - axis.from());
         for cell in 0..axis.count() {
-            for ends in cuts_toward(system, axis, cell, &surfaces, natural).windows(2) {
+            for ends in cuts_toward(system, axis, cell, &surfaces, exponents).windows(2) {
                 line.add(system, &rule, (ends[0], ends[1]), least, MOST_HALVINGS)?;
             }
         }
