@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
+use crate::common::sweeps::{rows, swept};
 use pbif::cancellation::Cancellation;
-use pbif::continuation::{DensitySource, Measure};
+use pbif::continuation::{BifurcationStatus, DensitySource, Measure};
 use pbif::method::{GeneratorMethodOptions, GeneratorSource, MonteCarloOptions, MonteCarloSource};
 use pbif::sweep_file::{Sweep, SweepFile};
 
@@ -212,4 +213,22 @@ fn sampled_paths_turn_back_at_walls() {
         println!("{name}: {} ± {error}, exactly {exact}", one.value);
         assert!((one.value - exact).abs() < 4.0 * error && error < 1e-2);
     }
+}
+
+/// The reflection of a noisy oscillator is found though its range is not a mirror image of itself: also between closed
+/// ends, which the check of what leaves the range puts where the range ends. The split is at a = 0.
+#[test]
+fn a_split_in_a_range_that_is_not_symmetric_is_located() {
+    let (_, result) = swept(
+        "[system.equations]\nx = \"y\"\ny = \"-y + a x - x^3\"\n[system.noise]\ny = \"sqrt(0.8)\"\n\
+         [sweep]\nparameter = \"a\"\nfrom = -0.5\nto = 0.6\npoints = 5\n\
+         [cells]\nx = { from = -3.0, to = 2.9, count = 50 }\ny = { from = -3.0, to = 2.8, count = 50 }\n\
+         [detect]\nmarginals = [\"x\"]\njoint = []\n",
+        "",
+    );
+    let [row] = rows(&result, "x")[..] else {
+        panic!("one split of x");
+    };
+    assert_eq!(row.status(), BifurcationStatus::Located);
+    assert!(row.value.abs() <= row.error && row.error < 1e-3);
 }

@@ -241,8 +241,9 @@ impl GeneratorSession {
         let kinked = &self.source.kinked;
         let maps = self.source.maps(solved.value)?;
         let mut densities = maps.exact(problem, masses, &difference)?;
+        let open = self.source.open_at(solved.value)?;
         for one in &mut densities {
-            one.structure = maps.structure(system, problem, masses, one.observable, kinked);
+            one.structure = maps.structure(&*open, problem, masses, one.observable, kinked);
             if self.source.sharp {
                 one.negligible *= SHARP;
             }

@@ -132,9 +132,10 @@ pub(super) fn solution<'session>(
     let difference: Vec<f64> = masses.iter().map(|mass| mass * found.error).collect();
     let (problem, maps) = (&source.problem, source.maps(value)?);
     let mut densities = maps.exact(problem, masses, &difference)?;
+    let open = source.open_at(value)?;
     for one in &mut densities {
         let kinked = &source.kinked;
-        one.structure = maps.structure(system, problem, masses, one.observable, kinked);
+        one.structure = maps.structure(&*open, problem, masses, one.observable, kinked);
         one.truncation.share = reporter.missing().beyond;
         // Of quantities sub-cells leave more than the quadrature does.
         if one.observable == Observable::Marginal(0) {

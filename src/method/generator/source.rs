@@ -91,12 +91,18 @@ impl GeneratorSource {
     /// # Errors
     /// [`SystemError`].
     pub(super) fn system_at(&self, value: f64) -> Result<Arc<dyn System>, SystemError> {
-        let system = self.problem.family().at(value)?;
+        let system = self.open_at(value)?;
         if !self.enclosed {
             return Ok(system);
         }
         let ranges = self.problem.space().ranges();
         Ok(Arc::new(Enclosed::new(system, &ranges)))
+    }
+
+    /// The same without the ends that close the range for a check. Hardly anything is at such ends: a density between
+    /// them is symmetric where its equations are, also where the ends are no mirror images of each other.
+    pub(super) fn open_at(&self, value: f64) -> Result<Arc<dyn System>, SystemError> {
+        self.problem.family().at(value)
     }
 
     /// The same on finer cells, which move with the places at which the drift is not smooth where densities of states
