@@ -142,7 +142,7 @@ impl Projection {
             .iter()
             .map(|coordinate| match coordinate {
                 Coordinate::Axis(axis) => {
-                    let known = space.axes().get(*axis).cloned();
+                    let known = space.axes().get(*axis).map(layout_axis);
                     known.ok_or(DensityError::Axis {
                         axis: *axis,
                         dimension,

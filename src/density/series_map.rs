@@ -11,7 +11,7 @@ const BINS: usize = 60;
 pub(crate) const BINS_OF_A_TURN: usize = 120;
 
 /// Modes that the coarser map leaves out: one of each parity, so that symmetric densities tell their error too.
-const LEFT_OUT: usize = 2;
+pub(super) const LEFT_OUT: usize = 2;
 
 /// The axis along which a density is laid out: the axis itself, or bins of equal width over an axis of modes, the same
 /// whatever their number.

@@ -6,6 +6,7 @@
 //! crosses. Where level lines run along the cells those errors agree from sub-cell to sub-cell, elsewhere they cancel.
 //! A second map with coarser sub-cells and polynomials of lower degree shows how much that is.
 
+use super::series_map::layout_axis;
 use super::sub_cell_values::{PerAxis, Share, SubCellValues};
 use super::sub_cells::SubCells;
 use crate::space::{Axis, CellSpace};
@@ -86,7 +87,7 @@ impl Cut {
         };
         let axes: Vec<usize> = (0..space.dimension()).filter(|&axis| needs(axis)).collect();
         let cut: Vec<&Axis> = axes.iter().map(|&axis| &space.axes()[axis]).collect();
-        let cells = cut.iter().map(|axis| axis.count()).product();
+        let cells = cut.iter().map(|axis| layout_axis(axis).count()).product();
         let place = |number: usize| axes.iter().position(|&axis| axis == number);
         let planes: Vec<(usize, f64)> = planes
             .iter()
@@ -94,7 +95,12 @@ impl Cut {
             .collect();
         let parts = detail.parts(cells, axes.len());
         Self {
-            sub_cells: SubCells::new(&cut, parts, detail.window(), &planes),
+            sub_cells: SubCells::new(
+                &cut,
+                parts,
+                (detail.window(), detail != Detail::Coarse),
+                &planes,
+            ),
             dimension: space.dimension(),
             axes,
         }
@@ -212,7 +218,7 @@ impl Spread {
         };
         let columns = match coordinates.get(1) {
             None => 1,
-            Some(Coordinate::Axis(axis)) => space.axes()[*axis].count(),
+            Some(Coordinate::Axis(axis)) => layout_axis(&space.axes()[*axis]).count(),
             Some(Coordinate::Quantity(_, bins)) => bins.count(),
         };
         let first = coordinates.first().map(&seen).unwrap_or_default();

@@ -3,10 +3,12 @@
 //!
 //! Along each axis the mass below a coordinate is interpolated through the edges of several cells, so that the
 //! sub-cells of a cell hold exactly its mass. Windows do not reach across planes on which the derivative of the density
-//! jumps.
+//! jumps. Along an axis of modes the series itself is integrated over sub-cells, which cut the bins over which its
+//! density is laid out.
 
 use std::ops::Range;
 
+use super::series_map::{LEFT_OUT, layout_axis};
 use crate::space::Axis;
 
 /// Sub-cells of a product of axes, and the weights that give their masses from those of the cells.
@@ -18,7 +20,10 @@ pub(super) struct SubCells {
 /// The sub-cells of one axis.
 #[derive(Debug, Clone)]
 struct Lines {
+    /// Cells of the axis, or its nodes.
     cells: usize,
+    /// Cells that are cut: those of the axis, or the bins over which a series is laid out.
+    whole: usize,
     /// `count + 1` edges of sub-cells.
     edges: Vec<f64>,
     /// Of each sub-cell the first cell that has a weight.
@@ -30,15 +35,18 @@ struct Lines {
 }
 
 impl SubCells {
-    /// Cuts every cell into `parts` along each axis; polynomials go through `window` cells. `planes` are axes with
-    /// coordinates at which the derivative jumps.
+    /// Cuts every cell into `parts` along each axis; polynomials go through `window` cells, series have all of their
+    /// modes, or some less. `planes` are axes with coordinates at which the derivative jumps.
     pub(super) fn new(
         axes: &[&Axis],
         parts: usize,
-        window: usize,
+        (window, all_modes): (usize, bool),
         planes: &[(usize, f64)],
     ) -> Self {
         let lines = axes.iter().enumerate().map(|(index, axis)| {
+            if axis.is_modes() {
+                return Lines::of_series(axis, parts, all_modes);
+            }
             let own = planes.iter().filter(|(plane, _)| *plane == index);
             let faces: Vec<usize> = own.filter_map(|(_, at)| axis.face_at(*at)).collect();
             Lines::new(axis, parts, window, &faces)
@@ -66,7 +74,7 @@ impl SubCells {
     pub(super) fn cell(&self, number: usize, axis: usize) -> usize {
         let faster: usize = self.axes[axis + 1..].iter().map(Lines::count).product();
         let lines = &self.axes[axis];
-        number / faster % lines.count() * lines.cells / lines.count()
+        number / faster % lines.count() * lines.whole / lines.count()
     }
 
     /// Masses of all sub-cells, and for each axis the change of mass along it from one end of the sub-cell to the
@@ -90,6 +98,7 @@ impl Lines {
     fn new(axis: &Axis, parts: usize, window: usize, faces: &[usize]) -> Self {
         let mut lines = Self {
             cells: axis.count(),
+            whole: axis.count(),
             edges: Vec::new(),
             first: Vec::new(),
             mass: Vec::new(),
@@ -125,6 +134,38 @@ impl Lines {
         }
         lines.edges.push(axis.to());
         lines
+    }
+
+    /// Of an axis of modes, each bin over which its density is laid out cut into parts.
+    fn of_series(axis: &Axis, parts: usize, all_modes: bool) -> Self {
+        let bins = layout_axis(axis);
+        let count = bins.count() * parts;
+        let (from, length) = (bins.from(), bins.to() - bins.from());
+        // Halves of sub-cells, from which slopes follow.
+        let halves = 0..=2 * count;
+        let places = halves.map(|half| from + length * half as f64 / (2 * count) as f64);
+        let places: Vec<f64> = places.collect();
+        let left_out = if all_modes { 0 } else { LEFT_OUT };
+        let used = axis.count().saturating_sub(left_out).max(1);
+        let weights = axis.series_weights(&places, used);
+        let pairs = weights.chunks_exact(2 * axis.count());
+        let joined = |sign: f64| {
+            let of_pair = |pair: &[f64]| -> Vec<f64> {
+                let (low, high) = pair.split_at(axis.count());
+                low.iter().zip(high).map(|(a, b)| b + sign * a).collect()
+            };
+            pairs.clone().map(of_pair).collect::<Vec<_>>()
+        };
+        let slope = joined(-1.0).into_iter();
+        let slope = slope.map(|row| row.into_iter().map(|weight| 4.0 * weight).collect());
+        Self {
+            cells: axis.count(),
+            whole: bins.count(),
+            edges: places.into_iter().step_by(2).collect(),
+            first: vec![0; count],
+            mass: joined(1.0),
+            slope: slope.collect(),
+        }
     }
 
     fn count(&self) -> usize {
@@ -209,7 +250,7 @@ mod tests {
             .iter()
             .flat_map(|a| along_y.iter().map(move |b| a * b))
             .collect();
-        let cut = SubCells::new(&[&x, &y], 3, 5, &[]);
+        let cut = SubCells::new(&[&x, &y], 3, (5, true), &[]);
         let found = cut.apply(&masses);
         assert_eq!(cut.count(), 36 * 24);
         let mut edges = [(0.0, 0.0); 2];
@@ -237,7 +278,7 @@ mod tests {
             .windows(2)
             .map(|e| below(e[1]) - below(e[0]))
             .collect();
-        let cut = SubCells::new(&[&axis], 4, 5, &[(0, 0.0)]);
+        let cut = SubCells::new(&[&axis], 4, (5, true), &[(0, 0.0)]);
         let found = cut.apply(&masses);
         let mut edges = [(0.0, 0.0)];
         for (number, mass) in found[0].iter().enumerate() {

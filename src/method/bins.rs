@@ -306,7 +306,7 @@ impl Look<'_> {
     /// Values beyond which little mass lies.
     fn quantiles(&self, masses: &[f64]) -> (f64, f64) {
         let centres: Vec<Vec<f64>> = (0..masses.len())
-            .map(|cell| self.space.centre(cell))
+            .map(|cell| self.space.place(cell))
             .collect();
         let mut pairs: Vec<(f64, f64)> = self
             .values(&centres)

@@ -74,6 +74,7 @@ use crate::monte_carlo::MonteCarloError;
 use crate::sampling::{SamplingError, frequency_of_forcing};
 use crate::stationary::StationaryError;
 use crate::stationary::generator::RateError;
+use crate::system::PassageStart;
 
 /// Most even parts of a forcing's period at which trajectories are looked at.
 const MOST_PHASES: usize = 120;
@@ -101,13 +102,24 @@ pub enum MethodError {
         "the phases that are watched are no parts of a period divided evenly by at most {MOST_PHASES}, at which trajectories are looked at: give fractions of a common denominator up to there"
     )]
     Phases,
-    /// Times of first passage, slow modes, or spectra, of a system with an axis that closes on itself.
+    /// Times of first passage, slow modes, or spectra, of a system under a periodic force.
     #[error(
-        "axis `{axis}` closes on itself: times of first passage, slow modes and spectra are not worked out over phases and angles yet; leave `[passage]`, `[relaxation]` and `[spectrum]` out"
+        "times of first passage, slow modes and spectra are not worked out under a periodic force: leave `[passage]`, `[relaxation]` and `[spectrum]` out"
     )]
-    TurnOfQuestion {
+    ForcedQuestion,
+    /// A passage with a region whose border runs through an axis of modes: what ends there has no smooth density.
+    #[error(
+        "passage `{passage}` has a region that depends on `{axis}`, which modes carry: give {}",
+        if *.is_turn { "`method.kind = \"monte-carlo\"`, or a region of other states".to_owned() }
+        else { format!("`cells.{axis}.count` in place of modes") }
+    )]
+    RegionOfModes {
+        /// Name of the passage.
+        passage: String,
         /// Name of the axis.
         axis: String,
+        /// Whether it closes on itself, so that it has no cells.
+        is_turn: bool,
     },
     /// Fields of passages over more than two axes, or fields or transitions over one that is no axis of cells.
     #[error(
@@ -200,10 +212,11 @@ fn has_densities(problem: &Problem) -> Result<(), MethodError> {
     let asks = !family.questions.passages.is_empty()
         || family.questions.slow_modes > 0
         || family.questions.spectrum.is_some();
-    if let (true, Some(axis)) = (asks, turn(problem)?) {
-        return Err(MethodError::TurnOfQuestion { axis });
+    if asks && family.model().phase_axis().is_some() {
+        return Err(MethodError::ForcedQuestion);
     }
     let space = problem.space();
+    check_regions(problem)?;
     let has_series = space.axes().iter().any(crate::space::Axis::is_modes);
     let has_fields = family.fields().next().is_some();
     let passages = &family.questions.passages;
@@ -232,14 +245,29 @@ fn has_densities(problem: &Problem) -> Result<(), MethodError> {
     check_sticking(problem.family(), &ranges)
 }
 
-/// Name of an axis that closes on itself, an angle or the phase of a forcing.
-fn turn(problem: &Problem) -> Result<Option<String>, MethodError> {
-    for system in problem.family().along()? {
-        if let Some(&axis) = system.facts().turns.keys().next() {
-            return Ok(Some(problem.family().axis(axis).to_owned()));
+/// Nothing, if no border of a region of a passage runs through an axis of modes.
+fn check_regions(problem: &Problem) -> Result<(), MethodError> {
+    let (family, space) = (problem.family(), problem.space());
+    for passage in &family.questions.passages {
+        let start = match &passage.start {
+            PassageStart::Region(region) => Some(region),
+            PassageStart::State(_) | PassageStart::Density => None,
+        };
+        let regions = [&passage.until].into_iter().chain(&passage.exits);
+        for region in regions.chain(start) {
+            let depends = region.level().states().iter();
+            let axes = space.axes().iter().zip(depends).enumerate();
+            let mut carried = axes.filter(|(_, (axis, depends))| **depends && axis.is_modes());
+            if let Some((number, (axis, _))) = carried.next() {
+                return Err(MethodError::RegionOfModes {
+                    passage: passage.name.clone(),
+                    axis: family.axis(number).to_owned(),
+                    is_turn: axis.is_closed(),
+                });
+            }
         }
     }
-    Ok(None)
+    Ok(())
 }
 
 // Whatever part of a method was asked to stop, the method was.

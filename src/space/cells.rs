@@ -126,6 +126,18 @@ impl CellSpace {
             .collect()
     }
 
+    /// The state that stands for a cell: the node of an axis of modes, the middle along others.
+    pub(crate) fn place(&self, cell: usize) -> Vec<f64> {
+        let along = |(index, axis): (usize, &Axis)| {
+            let position = self.position(cell, index);
+            match axis.is_modes() {
+                true => axis.nodes()[position],
+                false => axis.centre(position),
+            }
+        };
+        self.axes.iter().enumerate().map(along).collect()
+    }
+
     /// Volume of a cell (length in one dimension, area in two).
     pub fn volume(&self, cell: usize) -> f64 {
         let axes = self.axes.iter().enumerate();

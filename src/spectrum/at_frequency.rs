@@ -3,7 +3,7 @@
 use nalgebra::Complex;
 
 use super::grid::Grid;
-use super::real_shifts::balanced;
+use super::model::balanced;
 use crate::cancellation::Cancellation;
 use crate::stationary::generator::{RateError, Shifted, ShiftedPattern};
 

@@ -32,7 +32,21 @@ pub(super) struct Basis {
     pub(super) vectors: Vec<Vec<f64>>,
 }
 
+/// Cells of a grid so small that a model of all of its vectors costs nothing.
+const SMALL: usize = 64;
+
 impl Basis {
+    /// Adds what spans all vectors with Σ = 0, where these are few; whether they are.
+    pub(super) fn fill(&mut self, cells: usize) -> bool {
+        let is_small = cells <= SMALL;
+        for one in (0..cells).filter(|_| is_small) {
+            let mut unit = vec![0.0; cells];
+            unit[one] = 1.0;
+            self.add(balanced(unit));
+        }
+        is_small
+    }
+
     /// Adds a direction; whether it was a new one.
     pub(super) fn add(&mut self, mut vector: Vec<f64>) -> bool {
         let size = dot(&vector, &vector).sqrt();
@@ -62,6 +76,13 @@ impl Basis {
         }
         sum
     }
+}
+
+/// With Σ = 0: the steady state is left out.
+pub(super) fn balanced(mut vector: Vec<f64>) -> Vec<f64> {
+    let mean = vector.iter().sum::<f64>() / vector.len() as f64;
+    vector.iter_mut().for_each(|value| *value -= mean);
+    vector
 }
 
 /// What one generator, and another beside it, do between the first vectors of two spaces.
@@ -104,6 +125,15 @@ impl Products {
         grow(&mut self.overlaps, &columns.vectors);
         grow(&mut self.first, &self.images[0]);
         grow(&mut self.second, &self.images[1]);
+    }
+
+    /// So many vectors less of either space, but for those that span all there is: they leave nothing out.
+    pub(super) fn fewer(&self, size: usize, less: usize) -> usize {
+        let cells = self.images[0].first().map_or(0, Vec::len);
+        if size + 1 >= cells {
+            return size;
+        }
+        size.saturating_sub(less).max(1)
     }
 
     /// The model of so many vectors of either space; `None` where the two have nothing in common.

@@ -1,5 +1,7 @@
 //! How fast and how far states move in a steady state, and what the ends of the range do to an eigenvalue.
 
+use std::f64::consts::TAU;
+
 use nalgebra::Complex;
 
 use super::Steady;
@@ -31,7 +33,7 @@ pub(super) fn of_ends(
 /// How fast and how far states move in a steady state.
 pub(super) struct Motion {
     /// Rate at which states change: the largest, over the axes, of the root mean square of the drift over the standard
-    /// deviation.
+    /// deviation; of an angle, the rate at which drift or noise moves it by a radian.
     pub(super) rate: f64,
     /// Per axis and end that is no wall of the system, the square of the standard deviation over the distance from the
     /// mean to the end; zero at walls, and along series.
@@ -46,22 +48,32 @@ impl Motion {
         let whole: f64 = steady.masses.iter().map(|mass| mass.abs()).sum();
         let axes = grid.space.axes();
         let zeros = || vec![0.0; axes.len()];
-        let (mut drifts, mut means, mut squares) = (zeros(), zeros(), zeros());
+        let (mut drifts, mut intensities) = (zeros(), zeros());
+        let (mut means, mut squares) = (zeros(), zeros());
         for (cell, mass) in steady.masses.iter().enumerate() {
             let share = mass.abs() / whole;
             if share < NO_MASS {
                 continue;
             }
-            let state = grid.space.centre(cell);
+            let state = grid.space.place(cell);
             for (axis, drift) in system.drift_at(0.0, &state).into_iter().enumerate() {
                 drifts[axis] += share * drift * drift;
+                intensities[axis] += share * system.intensity_at(axis, 0.0, &state);
                 means[axis] += share * state[axis];
                 squares[axis] += share * state[axis] * state[axis];
             }
         }
         let variance = |axis: usize| squares[axis] - means[axis] * means[axis];
-        let by_cells = (0..axes.len()).filter(|&axis| !axes[axis].is_modes());
-        let rates = by_cells.map(|axis| (drifts[axis] / variance(axis)).sqrt());
+        let of_axis = |axis: usize| {
+            let radian = (axes[axis].to() - axes[axis].from()) / TAU;
+            let along = match (axes[axis].is_closed(), axes[axis].is_modes()) {
+                (true, _) => drifts[axis].sqrt().max(intensities[axis] / radian) / radian,
+                (false, false) => (drifts[axis] / variance(axis)).sqrt(),
+                (false, true) => return None,
+            };
+            Some(along)
+        };
+        let rates = (0..axes.len()).filter_map(of_axis);
         let rate = rates.filter(|rate| rate.is_finite()).reduce(f64::max)?;
         let end = |axis: usize, end: usize| {
             let is_wall = steady.closed.get(axis).is_none_or(|closed| closed[end]);

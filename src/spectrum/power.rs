@@ -193,7 +193,7 @@ fn on_grid(
 ) -> Worked<OnGrid> {
     let cells = grid.space.n_cells();
     let values = question.observables.iter().map(|observable| {
-        let at = |cell| observable(&grid.space.centre(cell));
+        let at = |cell| observable(&grid.space.place(cell));
         (0..cells).map(at).collect()
     });
     let values: Vec<Vec<f64>> = values.collect();

@@ -8,7 +8,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::SpectrumError;
 use super::grid::{Grid, ending};
-use super::model::{GridModel, Products, REACH, ReducedModel, in_order, standing};
+use super::model::{GridModel, Products, REACH, ReducedModel, balanced, in_order, standing};
 use crate::cancellation::Cancellation;
 use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions};
 
@@ -46,6 +46,12 @@ pub(super) fn at_real_shifts(
             .collect()
     };
     let mut found = GridModel::default();
+    if found.columns.fill(cells) && found.rows.fill(cells) {
+        (found.products).grow(&found.rows, &found.columns, [&grid.full, &grid.half]);
+        let size = found.columns.vectors.len();
+        found.modes = Standing::new(&found.products, size, wanted, rate).modes;
+        return Ok(found);
+    }
     let mut shift = rate;
     for _ in 0..SHIFTS {
         let (matrix, ends) = ending(&grid.full, shift);
@@ -82,13 +88,6 @@ pub(super) fn at_real_shifts(
     Ok(found)
 }
 
-/// With Σ = 0: the steady state is left out.
-pub(super) fn balanced(mut vector: Vec<f64>) -> Vec<f64> {
-    let mean = vector.iter().sum::<f64>() / vector.len() as f64;
-    vector.iter_mut().for_each(|value| *value -= mean);
-    vector
-}
-
 /// The eigenvalues of a model that fewer vectors give as well, each with what they change.
 ///
 /// They are told from the one nearest to the first shift on, up to the first that does not stand: of those that are as
@@ -102,7 +101,7 @@ struct Standing {
 impl Standing {
     fn new(products: &Products, size: usize, wanted: usize, shift: f64) -> Self {
         let of = |size: usize| products.model(size).as_ref().map(ReducedModel::eigenvalues);
-        let (Some(all), Some(fewer)) = (of(size), of(size - GROWTH / 2)) else {
+        let (Some(all), Some(fewer)) = (of(size), of(products.fewer(size, GROWTH / 2))) else {
             let modes = Vec::new();
             return Self {
                 modes,

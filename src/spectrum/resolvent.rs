@@ -4,9 +4,8 @@ use nalgebra::{Complex, DMatrix};
 
 use super::at_frequency::AtFrequency;
 use super::grid::{Grid, ending};
-use super::model::{Basis, Products, ReducedModel, product};
+use super::model::{Basis, Products, ReducedModel, balanced, product};
 use super::motion::Motion;
-use super::real_shifts::balanced;
 use super::transfer::Transfer;
 use super::{SpectrumError, dot};
 use crate::cancellation::Cancellation;
@@ -115,8 +114,9 @@ impl Resolvent {
             }
             growing.at_frequency(frequency, solves, cancellation)?;
         }
+        let is_whole = growing.size() + 1 >= grid.space.n_cells();
         let mut next = match begun {
-            [] => growing.with_shift(motion.rate, options, &mut work)?,
+            [] if !is_whole => growing.with_shift(motion.rate, options, &mut work)?,
             _ => growing.looked_at(),
         };
         for _ in 1..LOOKS {
@@ -189,6 +189,10 @@ struct Growing<'a> {
 impl<'a> Growing<'a> {
     /// Begins with what fast fluctuations are made of: the deviations and observables, and their first changes in time.
     fn begin(&mut self) {
+        let cells = self.grid.space.n_cells();
+        if self.columns.fill(cells) && self.rows.fill(cells) {
+            return;
+        }
         for (values, deviation) in self.observables.iter().zip(&self.deviations[0]) {
             let (mut column, mut row) = (deviation.clone(), centred(values));
             for _ in 0..AT_ONCE {
@@ -322,7 +326,7 @@ impl<'a> Growing<'a> {
     /// Vectors of a model that is one growth smaller.
     fn smaller(&self) -> usize {
         let growth = GROWTH * self.observables.len();
-        self.size().saturating_sub(growth).max(1)
+        self.products.fewer(self.size(), growth)
     }
 
     /// Where the spectra do not stand yet: the largest frequency or the slowest rate that more vectors change.

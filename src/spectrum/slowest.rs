@@ -12,10 +12,9 @@ use super::dot;
 use super::errors::Worked;
 use super::grid::{Grid, ending};
 use super::grid_mode::GridMode;
-use super::model::product;
+use super::model::{balanced, product};
 use super::modes::{ARTEFACT, GridModes, SEED};
 use super::motion::{Motion, of_ends};
-use super::real_shifts::balanced;
 use crate::cancellation::Cancellation;
 use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions};
 

@@ -25,7 +25,7 @@ const MOST: [usize; 4] = [2000, 240, 60, 20];
 const FINER: f64 = 1.5;
 /// Most modes that are used while numbers of cells are tried. Angles keep their own number: with fewer, the error of
 /// the modes would hide that of the cells.
-const TRIAL_MODES: usize = 4;
+pub(super) const TRIAL_MODES: usize = 4;
 /// Modes along an angle where the method has none.
 const TRIAL_HARMONICS: usize = 16;
 /// Orders of convergence that are believed: a steeper fall is mostly luck.

@@ -3,9 +3,10 @@
 
 use std::sync::Arc;
 
+use super::counts::TRIAL_MODES;
 use super::diagnostic::Diagnostic;
 use super::report::Report;
-use super::settings::{AxisSettings, Modes, Settings, at_cells, cell_space};
+use super::settings::{AxisSettings, Modes, ModesOf, Settings, at_cells, cell_space};
 use super::sweep::Sweep;
 use crate::cancellation::Cancellation;
 use crate::method::{
@@ -14,6 +15,9 @@ use crate::method::{
 };
 use crate::space::{Axis, CellSpace};
 use crate::system::{ParameterValues, System};
+
+/// Harmonics along an angle that slow modes and spectra have at least: densities alone may need fewer.
+const OF_FLUCTUATIONS: usize = 8;
 
 impl Settings {
     /// Finds the ranges and gradings that are left to the program, by free trajectories at both ends of the sweep, and
@@ -222,11 +226,19 @@ impl Settings {
         }
         // With any number they make a space; the right one is then found.
         for &axis in &open {
-            self.axes[axis].modes = Some(Modes::Number(2));
+            self.axes[axis].modes = Some(Modes::Number(TRIAL_MODES));
         }
-        let problem = self.on_coarse_cells(ends).fixed()?.problem;
+        let mut coarse = self.on_coarse_cells(ends);
+        coarse.find_bins(cancellation)?;
+        let problem = coarse.fixed()?.problem;
         let found = automatic_modes(&problem, &open, &self.method.generator, cancellation);
-        let found = found.map_err(|error| self.refuse_cells(Diagnostic::new(error.to_string())))?;
+        let mut found =
+            found.map_err(|error| self.refuse_cells(Diagnostic::new(error.to_string())))?;
+        let questions = &self.family.questions;
+        let is_turn = |&axis: &usize| self.axes[axis].series == ModesOf::Turn;
+        if (questions.slow_modes > 0 || questions.spectrum.is_some()) && open.iter().any(is_turn) {
+            found.count = found.count.max(OF_FLUCTUATIONS);
+        }
         let names: Vec<&str> = open.iter().map(|&axis| self.family.axis(axis)).collect();
         let mut note = format!(
             "modes: {} are chosen for {}; {}",

@@ -82,7 +82,9 @@ pub enum QuantityFault {
         name: String,
     },
     /// It depends on time.
-    #[error("`{name}` depends on time: a steady state does not")]
+    #[error(
+        "`{name}` depends on time, which no formula of the steady state may: leave `t` out of it"
+    )]
     Time {
         /// Its name.
         name: String,
@@ -224,6 +226,9 @@ impl Quantity {
         }
         let state = |state: usize| graph.contains(expression, Symbol::State(state));
         let states: Vec<bool> = (0..model.axes.len()).map(state).collect();
+        if model.phase_axis().is_some_and(|phase| states[phase]) {
+            return Err(QuantityFault::Time { name: named() });
+        }
         if !states.contains(&true) {
             return Err(QuantityFault::Constant { name: named() });
         }

@@ -1,15 +1,17 @@
 //! Coloured noise against exact moments, against its white limit, and against free trajectories.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use crate::common::steady::{by_trajectories, means, solve};
-use crate::common::sweeps::swept;
+use crate::common::sweeps::{solved, swept};
 use nalgebra::{DMatrix, DVector};
 use pbif::continuation::{BifurcationStatus, Finding};
 use pbif::density::{Density, Observable, Projection, total_variation};
 use pbif::generator::{AdvectiveScheme, GeneratorOptions, assemble, cell_masses};
 use pbif::space::{Axis, CellSpace};
 use pbif::system::{Model, NoiseKind, System, TypedModel, registry};
+use statrs::function::erf::erfc;
 
 const OU: NoiseKind = NoiseKind::OrnsteinUhlenbeck;
 
@@ -431,4 +433,56 @@ fn what_modes_of_noise_are_not_for_is_refused() {
     ] {
         assert!(refused(axes));
     }
+}
+
+/// x' = -k x + c η with η of unit variance and memory τ = 0.6: what is watched of both is known, though modes carry η.
+#[test]
+fn formulas_with_a_state_that_modes_carry_have_their_densities_and_means() {
+    let text = "[system.equations]\nx = \"-k x\"\n[system.noise]\nx = \"0.4\"\nkind = \"ornstein-uhlenbeck\"\n\
+                [system.parameters]\nk = 1.0\ntau = 0.6\n[sweep]\nparameter = \"k\"\nfrom = 0.7\nto = 1.2\npoints = 2\n\
+                [detect]\nmarginals = [\"s = x + 2 noise\"]\njoint = [[\"noise\", \"s\"]]\n\
+                [watch]\nq = \"x noise\"\nsize = \"abs(noise)\"\nstrength = \"noise^2\"\n";
+    let (k, tau): (f64, f64) = (1.2, 0.6);
+    let (_, solution) = solved(text, "", None);
+    let c = 0.4 / (2.0 * tau).sqrt();
+    let both = c / (k + 1.0 / tau);
+    let exact = [
+        ("mean_q", both),
+        ("mean_size", (2.0 / PI).sqrt()),
+        ("mean_strength", 1.0),
+    ];
+    for (name, exact) in exact {
+        let mut measures = solution.report.measures.iter();
+        let found = measures.find(|one| one.name == name).unwrap();
+        let (off, error) = ((found.value - exact).abs(), found.error.unwrap());
+        assert!(off <= error && error < 2e-4, "{name}: {off:e} of {error:e}");
+    }
+    let deviation = (c * both / k + 4.0 * both + 4.0).sqrt();
+    let below = |x: f64| 0.5 * erfc(-x / deviation / 2_f64.sqrt());
+    let [s, joint] = &solution.densities[..] else {
+        panic!("two densities");
+    };
+    let edges = s.density.axes[0].edges();
+    let bins = edges.windows(2).zip(s.density.masses());
+    let off: f64 = bins
+        .map(|(bin, mass)| (mass - below(bin[1]) + below(bin[0])).abs())
+        .sum();
+    // What is asked of the cells, `cells.accuracy`.
+    assert!(0.5 * off < 1e-3, "{off:e}");
+    // The noise's own axis is laid out over bins, and either sum over the joint density is a density again.
+    let columns = joint.density.axes[1].count();
+    let of_s = (0..columns).map(|column| {
+        let rows = joint
+            .density
+            .masses()
+            .into_iter()
+            .skip(column)
+            .step_by(columns);
+        rows.sum::<f64>()
+    });
+    let apart = of_s
+        .zip(s.density.masses())
+        .map(|(a, b)| (a - b).abs())
+        .sum::<f64>();
+    assert!(apart < 1e-3, "{apart:e}");
 }

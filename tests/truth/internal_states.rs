@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use crate::common::steady::solve;
+use crate::common::sweeps::solved;
 use nalgebra::{DMatrix, DVector};
 use pbif::cancellation::Cancellation;
 use pbif::density::Observable;
@@ -219,7 +220,7 @@ fn a_typed_circuit_is_carried_by_modes_and_the_prepared_file_gives_the_same_swee
 }
 
 #[test]
-fn values_that_do_not_relax_and_formulas_of_the_state_keep_cells() {
+fn values_that_do_not_relax_keep_cells() {
     let never = Cancellation::new();
     let carried = |text: &str| {
         let mut sweep = file(text);
@@ -230,10 +231,41 @@ fn values_that_do_not_relax_and_formulas_of_the_state_keep_cells() {
     assert!(carried(HARVESTER));
     let with_cells = format!("{HARVESTER}v = {{ from = -2.0, to = 2.0, count = 12 }}\n");
     assert!(!carried(&with_cells));
+    // A formula of the state is worked out from the series.
     let watched = format!("{HARVESTER}[watch]\npower = \"v^2\"\n");
-    assert!(!carried(&watched));
+    assert!(carried(&watched));
     // v grows on its own: no modes, and the message says why.
     let growing = HARVESTER.replace("tau = 1", "tau = -1") + "v = { modes = 4 }\n";
     let refused = file(&growing).validate().unwrap_err().to_string();
     assert!(refused.contains("does not relax linearly"), "{refused}");
+}
+
+/// Dahl's z' = y - (λ/f_c) |y| z has ⟨z z'⟩ = 0 in a steady state, whatever the rest of the system does.
+#[test]
+fn means_of_formulas_with_a_friction_state_keep_its_balance() {
+    let words = "cells.x.count=60 cells.y.count=60 detect.marginals=[\"x\"] detect.joint=[] figures.at=[] \
+                 watch.power=\"z*y\" watch.loss=\"abs(y)*z^2\" watch.square=\"z^2\"";
+    let text = include_str!("../../sweeps/dahl_alpha.toml");
+    let (_, solution) = solved(text, words, None);
+    let known = |name: &str| {
+        let mut measures = solution.report.measures.iter();
+        let found = measures.find(|one| one.name == name).unwrap();
+        (found.value, found.error.unwrap())
+    };
+    let ratio = 0.06 / 0.05;
+    let ((power, of_power), (loss, of_loss)) = (known("mean_power"), known("mean_loss"));
+    let off = (power - ratio * loss).abs();
+    let error = of_power + ratio * of_loss;
+    assert!(
+        off <= error && error < 3e-2 * power,
+        "{power} {loss}: {off:e} of {error:e}"
+    );
+    // The same number by the moments of the axis itself.
+    let ((mean, _), (deviation, error), (square, of_square)) =
+        (known("mean_z"), known("sd_z"), known("mean_square"));
+    let off = (square - mean * mean - deviation * deviation).abs();
+    assert!(
+        off <= of_square + 2.0 * deviation * error,
+        "{square}: {off:e}"
+    );
 }

@@ -6,6 +6,7 @@
 mod common;
 
 mod angles;
+mod angular_fluctuations;
 mod coloured_noise;
 mod forced;
 mod friction_laws;

@@ -2,7 +2,6 @@
 
 use super::along::{SweptSystems, filter};
 use crate::space::{Axis, SpaceError};
-use crate::sweep_file::draft::Draft;
 use crate::system::AxisDescription;
 
 /// What an axis is of, if modes carry it.
@@ -47,29 +46,15 @@ impl ModesOf {
         }
     }
 
-    /// Whether modes carry the axis where the file says nothing of it: the model marks it, and nothing that is watched
-    /// needs cells. A typed axis is marked by the form of its equation; the values of the parameters decide.
+    /// Whether modes carry the axis where the file says nothing of it: the model marks it. A typed axis is marked by
+    /// the form of its equation; the values of the parameters decide.
     pub(super) fn serve(
         self,
-        draft: &Draft,
         described: &AxisDescription,
         along: Option<&SweptSystems<'_>>,
     ) -> bool {
         let is_typed = along.is_some_and(|along| along.family.model().typed().is_some());
         let fit = !is_typed || self != Self::Bounded;
-        // Of the states of built-in models cells show too little: what needs them is refused, with the remedy.
-        let needs_cells = self == Self::Relaxing && is_in_formulas(draft, &described.name);
-        described.by_modes && fit && !needs_cells
+        described.by_modes && fit
     }
-}
-
-/// Whether a formula that is watched has the axis in it: such quantities are made from masses of cells.
-fn is_in_formulas(draft: &Draft, name: &str) -> bool {
-    let is_part = |letter: char| !(letter.is_alphanumeric() || letter == '_');
-    let has = |text: &str| text.split(is_part).any(|word| word == name);
-    let marginals = draft.marginals.iter().flatten();
-    let joint = draft.joint.iter().flatten().flatten();
-    // A name by itself is the axis, of which the series gives the density.
-    let mut texts = marginals.chain(joint).filter(|text| *text != name);
-    texts.any(|text| has(text)) || draft.averaged.iter().any(|(_, formula)| has(formula))
 }

@@ -86,19 +86,6 @@ pub(super) fn read(
                     else {
                         continue;
                     };
-                    let carried = [one, other]
-                        .into_iter()
-                        .find(|&axis| axis < dimension && has_modes(axis));
-                    let is_formula = |axis: &usize| {
-                        *axis >= dimension && given[axis - dimension].at_phase.is_none()
-                    };
-                    let quantity = [one, other].into_iter().find(is_formula);
-                    if let (Some(axis), Some(quantity)) = (carried, quantity) {
-                        let quantity = given[quantity - dimension].name.clone();
-                        let name = (model.axes[axis].name.as_str(), is_turn(axis));
-                        refuse_modes(reader, &quantity, name, Some(&item.place));
-                        continue;
-                    }
                     let joint = Observable::Joint(one, other);
                     watch(reader, &mut observables, joint, &item.place);
                 }
@@ -134,37 +121,11 @@ pub(super) fn read(
         })
         .collect();
     let averaged = read_all(reader, model, &averaged);
-    for quantity in quantities.iter().chain(&averaged) {
-        let mut axes = quantity.states().iter().enumerate();
-        let is_plain = quantity.phase().is_some();
-        if let Some((axis, _)) =
-            axes.find(|(axis, depends)| **depends && has_modes(*axis) && !is_plain)
-        {
-            let name = (model.axes[axis].name.as_str(), is_turn(axis));
-            refuse_modes(reader, quantity.name(), name, None);
-        }
-    }
     Watched {
         observables,
         quantities,
         averaged,
     }
-}
-
-/// Reports a quantity with an axis of modes: what is a quantity is made from masses of cells.
-fn refuse_modes(
-    reader: &mut Reader<'_>,
-    quantity: &str,
-    (name, is_closed): (&str, bool),
-    at: Option<&Place>,
-) {
-    let title = format!("`{quantity}` needs cells along `{name}`, which modes carry");
-    let remedy = match is_closed {
-        true => format!("leave the formula out: `{name}` closes on itself, and harmonics carry it"),
-        false => format!("give `cells.{name}.count` in place of modes, or leave the formula out"),
-    };
-    let diagnostic = Diagnostic::new(title).remedy(remedy);
-    reader.report(diagnostic.at(at, "carried by modes"));
 }
 
 /// The number of an axis, or of a quantity, numbered on from the axes.

@@ -155,10 +155,6 @@ fn modes_where_they_cannot_be_are_refused_with_the_remedy() {
             &["cells.z.modes=1"],
             "an integer from 2 to 128, or `\"auto\"`",
         ),
-        (
-            &["watch.power=\"y z\""],
-            "`power` needs cells along `z`, which modes carry",
-        ),
     ] {
         let message = refusal(sets);
         assert!(message.contains(words), "{sets:?}: {message}");
