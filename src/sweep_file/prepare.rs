@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::counts::TRIAL_MODES;
 use super::diagnostic::Diagnostic;
 use super::report::Report;
-use super::settings::{AxisSettings, Modes, ModesOf, Settings, at_cells, cell_space};
+use super::settings::{AxisSettings, Grade, Modes, ModesOf, Settings, at_cells, cell_space};
 use super::sweep::Sweep;
 use crate::cancellation::Cancellation;
 use crate::method::{
@@ -240,6 +240,18 @@ impl Settings {
             found.count = found.count.max(OF_FLUCTUATIONS);
         }
         let names: Vec<&str> = open.iter().map(|&axis| self.family.axis(axis)).collect();
+        if !found.is_enough && open.iter().all(|&axis| self.may_have_cells(axis)) {
+            self.chosen.push(format!(
+                "modes: {} do not do for {}, which is cut into cells",
+                found.count,
+                names.join(", ")
+            ));
+            for axis in open {
+                self.axes[axis].modes = None;
+                self.axes[axis].grade = Grade::Auto;
+            }
+            return Ok(false);
+        }
         let mut note = format!(
             "modes: {} are chosen for {}; {}",
             found.count,
@@ -259,6 +271,14 @@ impl Settings {
             self.axes[axis].modes = Some(Modes::Number(found.count));
         }
         Ok(true)
+    }
+
+    /// Whether cells may take the place of modes that nobody asked for: along a state of hysteresis.
+    fn may_have_cells(&self, axis: usize) -> bool {
+        let path = ["cells", self.family.axis(axis), "modes"];
+        let is_asked = self.document.root.find(&path).is_some();
+        let is_typed = self.family.model().typed().is_some();
+        is_typed && !is_asked && self.axes[axis].series == ModesOf::Bounded
     }
 
     /// Says what numbers of modes that are given leave out, where that is much.

@@ -4,9 +4,10 @@
 use std::sync::Arc;
 
 use crate::common::steady::solve;
-use crate::common::sweeps::solved;
+use crate::common::sweeps::{prepared, solved};
 use nalgebra::{DMatrix, DVector};
 use pbif::cancellation::Cancellation;
+use pbif::continuation::PointStatus;
 use pbif::density::Observable;
 use pbif::generator::{
     AdvectiveScheme, GeneratorError, GeneratorOptions, assemble, unknown_moments,
@@ -268,4 +269,53 @@ fn means_of_formulas_with_a_friction_state_keep_its_balance() {
         off <= of_square + 2.0 * deviation * error,
         "{square}: {off:e}"
     );
+}
+
+/// Bouc and Wen's law as it is typed, n = 1: z yields at ±A/(b + c), and has ⟨z z'⟩ = 0 in a steady state.
+const BOUC_WEN: &str = "[system.equations]\nx = \"y\"\ny = \"-0.1 y - a x - (1 - a) z\"\n\
+     z = \"A y - b abs(y) z - c y abs(z)\"\n[system.noise]\ny = \"sqrt(0.1)\"\n\
+     [system.parameters]\na = 0.1\nA = 1.2\nb = 0.5\nc = 0.3\n\
+     [sweep]\nparameter = \"a\"\nfrom = 0.05\nto = 0.4\npoints = 2\n\
+     [watch]\npower = \"z y\"\nloss = \"b abs(y) z^2 + c y z abs(z)\"\n";
+
+#[test]
+fn a_typed_state_of_hysteresis_has_its_bounds_and_modes_without_being_asked() {
+    let cells = "cells.x={from=-6,to=6,count=30} cells.y={from=-3.4,to=3.4,count=30}";
+    let (sweep, solution) = solved(BOUC_WEN, cells, None);
+    let axis = &sweep.problem.space().axes()[2];
+    assert!(axis.is_modes() && (axis.to() - 1.5).abs() < 1e-12 && axis.from() == -axis.to());
+    let known = |name: &str| {
+        let mut measures = solution.report.measures.iter();
+        let found = measures.find(|one| one.name == name).unwrap();
+        (found.value, found.error.unwrap())
+    };
+    let ((power, of_power), (loss, of_loss)) = (known("mean_power"), known("mean_loss"));
+    let off = (1.2 * power - loss).abs();
+    let error = 1.2 * of_power + of_loss;
+    assert!(
+        off <= error && off < 2e-2 * loss,
+        "{power} {loss}: {off:e} of {error:e}"
+    );
+    // Where the bounds move along the sweep they are known as well, and cells carry the state.
+    let moving = BOUC_WEN.replace(
+        "parameter = \"a\"\nfrom = 0.05\nto = 0.4",
+        "parameter = \"A\"\nfrom = 0.8\nto = 1.2",
+    );
+    let words = "cells.x={from=-6,to=6,count=12} cells.y={from=-3,to=3,count=12} cells.z.count=8";
+    let axes = prepared(&moving, words);
+    let axis = &axes.problem.space().axes()[2];
+    assert!(!axis.is_modes() && (axis.to() - 1.5).abs() < 1e-12);
+}
+
+/// Factors mode by mode serve the steady state of this law, and not what another scheme changes of it: others are made.
+#[test]
+#[ignore = "ten seconds: factors of all modes together"]
+fn what_factors_mode_by_mode_do_not_answer_others_do_at_length() {
+    let words = "cells.x={from=-6,to=6,count=62} cells.y={from=-3.2,to=3.2,count=62,grade={at=[0.0],smallest=0.0413}} \
+                 cells.z.modes=12 system.parameters.A=1 system.parameters.c=0.5";
+    let (_, solution) = solved(BOUC_WEN, words, Some(0.05));
+    assert_eq!(solution.report.status, PointStatus::Solved);
+    let mut measures = solution.report.measures.iter();
+    let factorisations = measures.find(|one| one.name == "factorisations").unwrap();
+    assert!(factorisations.value > 1.0);
 }

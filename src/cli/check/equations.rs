@@ -27,6 +27,14 @@ pub(super) fn lines(spec: &Sweep) -> Vec<String> {
     } else {
         "drift or noise is not smooth in places that are no plane of one coordinate".to_owned()
     });
+    let said = typed.source().bounds();
+    let is_said = |axis: usize| said.iter().any(|(name, _, _)| name == family.axis(axis));
+    for (&axis, (from, to)) in facts.bounds.iter().filter(|(axis, _)| !is_said(**axis)) {
+        let name = family.axis(axis);
+        found.push(format!(
+            "{name} stays between {from} and {to}: it has hysteresis"
+        ));
+    }
     let reflected = facts.symmetry.as_ref().map(|symmetry| {
         let axes = symmetry.reflected.iter().enumerate();
         let axes = axes.filter(|(_, reflected)| **reflected);

@@ -23,7 +23,7 @@ use crate::method::measures::{Cells, Others};
 use crate::method::report::{QUIET_ESCAPE, Reporter};
 use crate::method::watched::planes;
 use crate::method::{MethodError, Problem, natural_ends};
-use crate::stationary::generator::RateInfo;
+use crate::stationary::generator::{RateError, RateInfo};
 
 /// Escape per unit time below which mass is said to stay in Ω, and relaxation is not looked at.
 const NO_ESCAPE: f64 = 1e-12;
@@ -32,8 +32,25 @@ const NO_ESCAPE: f64 = 1e-12;
 type Judged = (Solution<'static>, Option<Trail>);
 
 impl GeneratorSession {
-    /// Judges a solution and turns it into densities.
+    /// Judges a solution and turns it into densities. No error is known of a state of which another scheme's cannot be
+    /// solved: that is told as one that is not solved itself.
     pub(super) fn judge(
+        &mut self,
+        solved: &PointSolve,
+        before: Option<&Trail>,
+    ) -> Result<Judged, MethodError> {
+        match self.judge_by_schemes(solved, before) {
+            Err(MethodError::Rates(RateError::Sensitivity)) => {
+                let info = &solved.steady.info;
+                let mut reporter = reporter(&self.source.problem, info);
+                reporter.not_converged(info.error_estimate);
+                Ok((Solution::without_density(reporter.report), None))
+            }
+            judged => judged,
+        }
+    }
+
+    fn judge_by_schemes(
         &mut self,
         solved: &PointSolve,
         before: Option<&Trail>,

@@ -30,7 +30,7 @@ const CHANGE: f64 = 1e-4;
 const CHANGE_ALONE: f64 = 1e-10;
 
 /// Change up to which it may be the cells' doing that it no longer falls, and the share of the change before it that it
-/// has then.
+/// has then; and change up to which the largest number that is tried will do.
 const FLOOR: f64 = 1e-3;
 const STALLED: f64 = 0.7;
 
@@ -133,6 +133,8 @@ pub(crate) fn automatic_modes(
         found.count = count;
         before = Some(now);
     }
+    // A state whose law has a bend converges slowly in the number of modes.
+    found.is_enough = wanted == CHANGE && found.change <= FLOOR;
     Ok(found)
 }
 

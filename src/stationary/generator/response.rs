@@ -50,7 +50,8 @@ impl DirectSolver {
         self.last.as_ref().is_some_and(|(last, _)| last == matrix)
     }
 
-    /// The answer of the last steady state `mass`.
+    /// The answer of the last steady state `mass`. Factors that served it may not serve the answer: where they do not,
+    /// more demanding ones are made.
     ///
     /// # Errors
     /// As [`super::RateSolver::sensitivity`].
@@ -59,6 +60,27 @@ impl DirectSolver {
         question: &Question<'_>,
         mass: &[f64],
     ) -> Result<Vec<f64>, RateError> {
+        loop {
+            if let Some((response, used)) = self.try_to_answer(question, mass)? {
+                self.count_response(used);
+                return Ok(response);
+            }
+            let plan = self.plan.as_ref().map(|(_, plan)| *plan);
+            let demanding = plan.and_then(|plan| self.fall_back(&plan));
+            demanding.ok_or(RateError::Sensitivity)?;
+            let (matrix, escape) = self.last.take().ok_or(RateError::NoSteadyState)?;
+            let renewed = self.renew(&matrix, &escape, mass);
+            self.last = Some((matrix, escape));
+            renewed?;
+        }
+    }
+
+    /// The answer by the factors at hand, and the iterations that it took; `None` where they do not serve.
+    fn try_to_answer(
+        &self,
+        question: &Question<'_>,
+        mass: &[f64],
+    ) -> Result<Option<(Vec<f64>, usize)>, RateError> {
         let (Some((matrix, escape)), Some(kept)) = (&self.last, &self.preconditioner) else {
             return Err(RateError::NoSteadyState);
         };
@@ -68,12 +90,11 @@ impl DirectSolver {
             escape,
             held: kept.held,
         };
-        let (seat, limit) = (Seat::default(), self.options.max_iterations);
+        let plan = self.plan.as_ref().map(|(_, plan)| plan);
+        let patience = plan.map_or(usize::MAX, |plan| self.patience(plan));
+        let (seat, limit) = (Seat::default(), self.options.max_iterations.min(patience));
         let asked = answer(&seat, &balance, mass, question, limit, &self.cancellation);
-        let found = run_alone(|rest| kept.apply_one(rest), &seat, asked)?;
-        let (response, used) = found.ok_or(RateError::Sensitivity)?;
-        self.count_response(used);
-        Ok(response)
+        Ok(run_alone(|rest| kept.apply_one(rest), &seat, asked)?)
     }
 
     /// Counts the iterations of an answer beyond those that new factors would take.

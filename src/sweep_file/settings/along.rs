@@ -46,6 +46,13 @@ impl<'a> SweptSystems<'a> {
         !self.corners.is_empty() && corners.all(relaxes)
     }
 
+    /// Whether an axis has bounds that are the same at all corners.
+    pub(super) fn has_still_bounds(&self, axis: usize) -> bool {
+        let mut known = self.corners.iter().map(|one| one.facts().bounds(axis));
+        let first = known.next().flatten();
+        first.is_some() && known.all(|one| one == first)
+    }
+
     /// The ends of a turn of an axis that closes on itself.
     pub(super) fn turn(&self, axis: usize) -> Option<(f64, f64)> {
         self.corners.first()?.facts().turns.get(&axis).copied()

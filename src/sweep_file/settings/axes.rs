@@ -69,7 +69,7 @@ fn read_axis(
 ) -> Option<AxisSettings> {
     let method = draft.method.kind;
     let series = ModesOf::new(along, index);
-    let by_modes = method.takes_modes() && series.serve(described, along);
+    let by_modes = method.takes_modes() && series.serve((index, described), along);
     if by_modes && reader.entry(&["cells", name]).is_none() {
         let bounds = along?.bounds(index);
         return Some(AxisSettings {

@@ -47,14 +47,17 @@ impl ModesOf {
     }
 
     /// Whether modes carry the axis where the file says nothing of it: the model marks it. A typed axis is marked by
-    /// the form of its equation; the values of the parameters decide.
+    /// the form of its equation, of a state that relaxes linearly or has hysteresis; the values of the parameters
+    /// decide.
     pub(super) fn serve(
         self,
-        described: &AxisDescription,
+        (axis, described): (usize, &AxisDescription),
         along: Option<&SweptSystems<'_>>,
     ) -> bool {
         let is_typed = along.is_some_and(|along| along.family.model().typed().is_some());
-        let fit = !is_typed || self != Self::Bounded;
+        // A range that moves along the sweep is too wide at one of its ends for modes.
+        let has_bounds = along.is_some_and(|along| along.has_still_bounds(axis));
+        let fit = !is_typed || self != Self::Bounded || has_bounds;
         described.by_modes && fit
     }
 }

@@ -3,6 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use super::CompiledDrift;
+use super::hysteresis;
 use super::read::Reading;
 use crate::formula::analysis::Reflection;
 use crate::formula::graph::{Expression, Point};
@@ -90,11 +91,28 @@ impl Typed {
             period: reading.period.map(|period| self.value(period)),
             ..Facts::default()
         };
+        for (axis, &path) in reading.paths.iter().enumerate() {
+            let unknown = path.filter(|_| !facts.bounds.contains_key(&axis));
+            let found = unknown.and_then(|path| self.hysteresis(axis, path));
+            facts.bounds.extend(found.map(|found| (axis, found)));
+        }
         if let Some(mend) = reading.extras.facts {
             mend(&self.values, &mut facts);
         }
         facts.symmetry = self.find_symmetry(&facts);
         facts
+    }
+
+    /// Values between which a state stays that has hysteresis along the path of another one.
+    fn hysteresis(&self, axis: usize, path: usize) -> Option<(f64, f64)> {
+        let dimension = self.dimension();
+        hysteresis::bounds(|v, z| {
+            let mut states = vec![[0.0; LANES]; dimension];
+            (states[path], states[axis]) = ([v; LANES], [z; LANES]);
+            let mut drift = vec![[0.0; LANES]; dimension];
+            self.drift(0.0, &states, &mut drift);
+            drift[axis][0]
+        })
     }
 
     fn surfaces(&self) -> Vec<SwitchingSurface> {

@@ -11,6 +11,7 @@ mod bound;
 mod compiled;
 mod equations;
 mod error;
+mod hysteresis;
 mod linear;
 mod particle;
 mod read;
@@ -312,9 +313,11 @@ impl TypedModel {
 /// Axes from this one on are internal states; those before it are the oscillator's, which are looked at.
 const FIRST_INTERNAL_AXIS: usize = 2;
 
-/// Whether an axis is that of an internal state that relaxes linearly, for which modes serve better than cells.
+/// Whether an axis is that of an internal state that relaxes linearly, or may have hysteresis: modes serve better than
+/// cells for it.
 fn is_internal(reading: &read::Reading, axis: usize) -> bool {
-    axis >= FIRST_INTERNAL_AXIS && reading.relaxation[axis].is_some()
+    let is_form = reading.relaxation[axis].is_some() || reading.paths[axis].is_some();
+    axis >= FIRST_INTERNAL_AXIS && is_form
 }
 
 /// What was typed, to write it down again.

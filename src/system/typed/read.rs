@@ -54,6 +54,8 @@ pub(super) struct Reading {
     pub(super) period: Option<Expression>,
     /// Rates, of parameters alone, at which axes without noise and bounds relax.
     pub(super) relaxation: Vec<Option<Expression>>,
+    /// Of an axis without noise that may have hysteresis, the axis along whose path.
+    pub(super) paths: Vec<Option<usize>>,
     pub(super) friction: Option<Expression>,
     pub(super) extras: Extras,
 }

@@ -50,7 +50,10 @@ impl DirectSolver {
 
     /// Takes the plan to fall back to when factors mode by mode, or single precision, did not converge; later solves
     /// keep it.
-    pub(super) fn fall_back(&mut self, plan: &Estimate) -> Option<Estimate> {
+    pub(in crate::stationary::generator) fn fall_back(
+        &mut self,
+        plan: &Estimate,
+    ) -> Option<Estimate> {
         let next = self.more_demanding(plan)?;
         if let Some((_, plan)) = &mut self.plan {
             *plan = next;
@@ -74,7 +77,7 @@ impl DirectSolver {
     }
 
     /// Iterations after which factors mode by mode are given up where others could be had.
-    pub(super) fn patience(&self, plan: &Estimate) -> usize {
+    pub(in crate::stationary::generator) fn patience(&self, plan: &Estimate) -> usize {
         let is_modewise = plan.method == RateMethod::Modewise;
         match is_modewise && self.more_demanding(plan).is_some() {
             true if has_phase(&self.space) => PATIENCE_WITH_A_PHASE,

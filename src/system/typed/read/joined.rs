@@ -5,7 +5,7 @@ use super::{Noise, Planes, Reader, Reading};
 use crate::formula::analysis::KinkPlace;
 use crate::formula::graph::{Expression, Symbol};
 use crate::formula::tape::{BindError, Program};
-use crate::system::typed::{FormulaPlace, Interpretation, TypedModelError, relaxation};
+use crate::system::typed::{FormulaPlace, Interpretation, TypedModelError, hysteresis, relaxation};
 
 impl Reader<'_> {
     /// What follows from expressions that are all there.
@@ -33,6 +33,13 @@ impl Reader<'_> {
         let free =
             |axis: usize| bounds[axis].is_none() && !is_turn(axis) && !noise_axes.contains(&axis);
         let relaxation = relaxation::rates(self.scope.graph_mut(), &drift_expressions, &free)?;
+        let is_driven = |axis: usize| is_turn(axis) || noise_axes.contains(&axis);
+        let paths = drift_expressions.iter().enumerate();
+        let paths = paths.map(|(axis, &drift)| {
+            let path = hysteresis::path_of(self.scope.graph(), drift, axis);
+            path.filter(|_| !is_driven(axis))
+        });
+        let paths = paths.collect();
         let friction = self.friction()?;
         let scope = self.scope;
         let own = noise.iter().zip(&noise_axes);
@@ -62,6 +69,7 @@ impl Reader<'_> {
             bounds,
             period,
             relaxation,
+            paths,
             friction,
             extras: self.model.extras.clone(),
         };
