@@ -88,6 +88,8 @@ mod tests {
         }
         let at_one = |v: f64, z: f64| 0.8 * v - 0.5 * v.abs() * z - 0.3 * v * z.abs();
         assert!((bounds(at_one).unwrap().1 - 1.0).abs() < 1e-15);
+        let hardening = |v: f64, z: f64| v - 1.5 * v.abs() * z + 0.5 * v * z.abs();
+        assert_eq!(bounds(hardening), Some((-1.0, 1.0)));
         // Dahl's law, one that yields earlier on one side, and one that is run through backwards.
         let dahl = |v: f64, z: f64| v - 4.0 * v.abs() * z;
         assert_eq!(bounds(dahl), Some((-0.25, 0.25)));
