@@ -4,6 +4,7 @@
 use crate::common::sweeps::{settings, solved};
 use pbif::cancellation::Cancellation;
 use pbif::continuation::Solution;
+use pbif::sweep_file::SweepFile;
 
 /// A measure and its error.
 fn measure(solution: &Solution<'_>, name: &str) -> (f64, f64) {
@@ -135,6 +136,18 @@ fn regions_that_an_angle_bounds_and_questions_under_a_force_are_refused_with_a_w
         message.contains("depends on `theta`") && message.contains("monte-carlo"),
         "{message}"
     );
+    for (watch, of) in [("", "theta"), ("[watch]\nc = \"theta v\"\n", "c")] {
+        let jumps = format!("{watch}[spectrum]\nof = [\"{of}\"]\n");
+        let given = SweepFile::parse("sweep.toml", &rotor("sin(theta)", &jumps)).validate();
+        let message = given
+            .err()
+            .map(|report| report.to_string())
+            .unwrap_or_default();
+        assert!(
+            message.contains("jumps where the turn of `theta` ends"),
+            "{message}"
+        );
+    }
     let forced = rotor("sin(theta) + cos(t)", "[relaxation]\nmodes = 2\n");
     let message = refused(&forced);
     assert!(message.contains("under a periodic force"), "{message}");

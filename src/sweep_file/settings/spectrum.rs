@@ -132,8 +132,54 @@ fn number_of(
         reader.report(found.remedy(remedy));
         return None;
     };
+    if let Some(angle) = torn(family, &found) {
+        let title = format!(
+            "`{}` jumps where the turn of `{angle}` ends",
+            quotable(name)
+        );
+        let remedy =
+            format!("take a formula that does not, such as `c = \"cos({angle})\"` in `[watch]`");
+        let found = Diagnostic::new(title).at(place, "a jump is no fluctuation");
+        reader.report(found.remedy(remedy));
+        return None;
+    }
     observables.push(found);
     Some(observables.len() - 1)
+}
+
+/// States of the other axes at which both ends of a turn are looked at.
+const LOOKED_AT: [f64; 3] = [-0.83, 0.31, 1.27];
+
+/// Relative difference between both ends of a turn that is rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// The angle at the end of whose turn something jumps, if it does.
+fn torn<'a>(family: &'a Family, fluctuating: &Fluctuating) -> Option<&'a str> {
+    let (from, _) = family.ends();
+    let system = family.at(from).ok()?;
+    let turns = &system.facts().turns;
+    let jumps = |axis: usize| match fluctuating {
+        Fluctuating::Axis(own, _) => *own == axis,
+        Fluctuating::Quantity(quantity) => {
+            let bound = family
+                .values_at(from)
+                .ok()
+                .and_then(|at| quantity.bind(&at).ok());
+            let (Some(bound), Some(&(low, high))) = (bound, turns.get(&axis)) else {
+                return false;
+            };
+            LOOKED_AT.iter().any(|&others| {
+                let mut state = vec![others; system.dimension()];
+                let [one, other] = [low, high].map(|end| {
+                    state[axis] = end;
+                    bound.at(&state)
+                });
+                (one - other).abs() > ROUNDING * one.abs().max(1.0)
+            })
+        }
+    };
+    let mut angles = family.angles();
+    angles.find(|(axis, _)| jumps(*axis)).map(|(_, name)| name)
 }
 
 /// An error at a key of `[spectrum]`, or at the table.
