@@ -240,17 +240,23 @@ impl Settings {
             found.count = found.count.max(OF_FLUCTUATIONS);
         }
         let names: Vec<&str> = open.iter().map(|&axis| self.family.axis(axis)).collect();
-        if !found.is_enough && open.iter().all(|&axis| self.may_have_cells(axis)) {
+        if !found.is_enough && open.iter().any(|&axis| self.may_have_cells(axis)) {
+            let (cut, others): (Vec<usize>, Vec<usize>) =
+                open.iter().partition(|&&axis| self.may_have_cells(axis));
+            let names: Vec<&str> = cut.iter().map(|&axis| self.family.axis(axis)).collect();
             self.chosen.push(format!(
-                "modes: {} do not do for {}, which is cut into cells",
+                "modes: {} do not do for {}, cut into cells",
                 found.count,
                 names.join(", ")
             ));
-            for axis in open {
+            for axis in cut {
                 self.axes[axis].modes = None;
                 self.axes[axis].grade = Grade::Auto;
             }
-            return Ok(false);
+            for axis in others {
+                self.axes[axis].modes = Some(Modes::Auto);
+            }
+            return self.find_modes(ends, cancellation);
         }
         let mut note = format!(
             "modes: {} are chosen for {}; {}",

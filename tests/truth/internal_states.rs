@@ -305,6 +305,15 @@ fn a_typed_state_of_hysteresis_has_its_bounds_and_modes_without_being_asked() {
     let axes = prepared(&moving, words);
     let axis = &axes.problem.space().axes()[2];
     assert!(!axis.is_modes() && (axis.to() - 1.5).abs() < 1e-12);
+    // Also where they are widest between both ends.
+    let between = moving
+        .replace("b abs(y) z + ", "")
+        .replace("b abs(y) z", "(0.3 + A^2) abs(y) z");
+    let between = between
+        .replace("A y - ", "y - ")
+        .replace(" - c y abs(z)", "");
+    let axes = prepared(&between.replace("from = 0.8", "from = -1.2"), words);
+    assert!((axes.problem.space().axes()[2].to() - 1.0 / 0.3).abs() < 1e-12);
 }
 
 /// Factors mode by mode serve the steady state of this law, and not what another scheme changes of it: others are made.

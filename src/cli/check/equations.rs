@@ -29,7 +29,14 @@ pub(super) fn lines(spec: &Sweep) -> Vec<String> {
     });
     let said = typed.source().bounds();
     let is_said = |axis: usize| said.iter().any(|(name, _, _)| name == family.axis(axis));
-    for (&axis, (from, to)) in facts.bounds.iter().filter(|(axis, _)| !is_said(**axis)) {
+    let (first, last) = family.ends();
+    let others = [0.5 * (first + last), last].map(|value| family.at(value));
+    let stays = |axis: usize| {
+        let mut others = others.iter().flatten();
+        others.all(|one| one.facts().bounds(axis) == facts.bounds(axis))
+    };
+    let found_here = facts.bounds.iter();
+    for (&axis, (from, to)) in found_here.filter(|(axis, _)| !is_said(**axis) && stays(**axis)) {
         let name = family.axis(axis);
         found.push(format!(
             "{name} stays between {from} and {to}: it has hysteresis"

@@ -21,7 +21,7 @@ pub(super) fn filter(family: &Family, axis: usize) -> Option<(f64, f64)> {
     at(from).filter(|one| at(to).as_ref() == Some(one))
 }
 
-/// What is swept, with the systems at both ends of the sweep, or at the corners of the map's box.
+/// What is swept, with the systems along the sweep, or along two sides of the map's box.
 pub(super) struct SweptSystems<'a> {
     pub(super) family: &'a Family,
     pub(super) corners: Vec<Arc<dyn System>>,
@@ -78,13 +78,19 @@ impl<'a> SweptSystems<'a> {
     }
 }
 
-/// The systems at both ends of a sweep, or at the corners of the map's box; those that are not allowed are refused
-/// elsewhere.
+/// Steps along a sweep at which systems are looked at: bounds may be wider between its ends.
+const STEPS: usize = 8;
+
+/// The systems along a sweep, its ends among them, or along two sides of the map's box; those that are not allowed are
+/// refused elsewhere.
 fn corners(family: &Family, draft: &Draft) -> Vec<Arc<dyn System>> {
     let (model, (from, to)) = (family.model(), family.ends());
-    let ends: Vec<ParameterValues> = [from, to]
-        .into_iter()
-        .filter_map(|end| family.values_at(end).ok())
+    let at = |step: usize| match step {
+        STEPS => to,
+        step => from + (to - from) * step as f64 / STEPS as f64,
+    };
+    let ends: Vec<ParameterValues> = (0..=STEPS)
+        .filter_map(|step| family.values_at(at(step)).ok())
         .collect();
     let map = &draft.map;
     let values = match (&map.parameter, map.from, map.to) {

@@ -4,12 +4,18 @@
 
 use crate::formula::graph::{Expression, Graph};
 
-/// Factors by which a path is run through faster, and states at which that is tried.
-const FASTER: [f64; 3] = [1e-3, 0.37, 29.0];
+/// Factors by which a path is run through faster or more slowly, and states at which that is tried: a law that is
+/// rounded off where the path turns back is none of these.
+const FASTER: [f64; 9] = [1e-12, 1e-9, 1e-6, 1e-3, 0.37, 29.0, 1e4, 1e8, 1e12];
 const STATES: [f64; 6] = [-31.0, -1.0, -0.013, 0.021, 0.7, 17.0];
 
 /// Relative difference that is rounding.
 const ROUNDING: f64 = 1e-9;
+
+/// A state yields smoothly: this near to its bound, as a share, it moves outward no faster than this share of its rate
+/// at the origin. Paths in steps would pass a bound at which the rate jumps.
+const NEAR: f64 = 1e-6;
+const SLOW: f64 = 1e-3;
 
 /// Bounds are looked for from this size on, in so many steps of a factor of two.
 const SMALLEST: f64 = 1e-9;
@@ -62,7 +68,8 @@ pub(super) fn bounds(drift: impl Fn(f64, f64) -> f64) -> Option<(f64, f64)> {
                 false => inner = middle,
             }
         }
-        Some(side * outer)
+        let is_smooth = outward(side, outer * (1.0 - NEAR)) <= SLOW * outward(side, 0.0);
+        is_smooth.then_some(side * outer)
     };
     let (low, high) = (bound(-1.0)?, bound(1.0)?);
     depends_on_path_alone.then_some((low, high))
@@ -108,6 +115,12 @@ mod tests {
             bounds(|v, z| v - v.abs() * z / (1.0 + (-v * v).exp())),
             None
         );
+        let rounded = |v: f64, z: f64| v - v * (v / 3e-5).tanh() * z;
+        assert_eq!(bounds(rounded), None);
+        assert_eq!(bounds(|v, z| v - v.abs().min(50.0) * z), None);
+        // Where the rate jumps, as of an elasto-plastic law without a transition.
+        let sharp = |v: f64, z: f64| if z * v.signum() < 1.0 { v } else { 0.0 };
+        assert_eq!(bounds(sharp), None);
         // A point of rest is no yielding.
         assert_eq!(bounds(|v, z| -v.abs() * z), None);
     }
