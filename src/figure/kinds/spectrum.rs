@@ -124,14 +124,14 @@ fn draw_spectrum(
     let lines: Vec<Line> = chosen
         .iter()
         .filter_map(|point| Some((point.value, powers(of_point(point, asked)?))))
-        // A logarithm of nothing is not drawn.
+        // A power that may be none, as that of a velocity at zero is, has no place among logarithms.
         .map(|(value, known)| Line {
             value,
             places: places
                 .iter()
                 .copied()
                 .zip(known)
-                .filter(|(_, known)| known.0 > 0.0)
+                .filter(|(_, known)| known.0 > known.1)
                 .collect(),
         })
         .collect();
