@@ -11,7 +11,7 @@ const BINS: usize = 60;
 pub(crate) const BINS_OF_A_TURN: usize = 120;
 
 /// Modes that the coarser map leaves out: one of each parity, so that symmetric densities tell their error too.
-pub(super) const LEFT_OUT: usize = 2;
+const LEFT_OUT: usize = 2;
 
 /// The axis along which a density is laid out: the axis itself, or bins of equal width over an axis of modes, the same
 /// whatever their number.
@@ -24,6 +24,12 @@ pub(crate) fn layout_axis(axis: &Axis) -> Axis {
     } else {
         axis.clone()
     }
+}
+
+/// Modes of an axis that a map uses: all of them, or, of the coarser one, some less.
+pub(super) fn used_modes(axis: &Axis, is_coarse: bool) -> usize {
+    let left_out = if is_coarse { LEFT_OUT } else { 0 };
+    axis.count().saturating_sub(left_out).max(1)
 }
 
 /// From masses at the nodes of series to masses of bins, along one or two axes of an observable.
@@ -54,16 +60,11 @@ impl SeriesMap {
         let mut steps = Vec::new();
         for (place, axis) in axes.iter().enumerate().filter(|(_, axis)| axis.is_modes()) {
             let bins = layout_axis(axis);
-            let used = if is_coarse {
-                axis.count().saturating_sub(LEFT_OUT).max(1)
-            } else {
-                axis.count()
-            };
             steps.push(Step {
                 from: axis.count(),
                 to: bins.count(),
                 stride: axes[place + 1..].iter().map(|axis| axis.count()).product(),
-                weights: axis.series_weights(bins.edges(), used),
+                weights: axis.series_weights(bins.edges(), used_modes(axis, is_coarse)),
             });
         }
         (!steps.is_empty()).then_some(Self { steps })

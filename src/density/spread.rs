@@ -98,7 +98,7 @@ impl Cut {
             sub_cells: SubCells::new(
                 &cut,
                 parts,
-                (detail.window(), detail != Detail::Coarse),
+                (detail.window(), detail == Detail::Coarse),
                 &planes,
             ),
             dimension: space.dimension(),

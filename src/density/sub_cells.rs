@@ -8,7 +8,7 @@
 
 use std::ops::Range;
 
-use super::series_map::{LEFT_OUT, layout_axis};
+use super::series_map::{layout_axis, used_modes};
 use crate::space::Axis;
 
 /// Sub-cells of a product of axes, and the weights that give their masses from those of the cells.
@@ -35,17 +35,17 @@ struct Lines {
 }
 
 impl SubCells {
-    /// Cuts every cell into `parts` along each axis; polynomials go through `window` cells, series have all of their
-    /// modes, or some less. `planes` are axes with coordinates at which the derivative jumps.
+    /// Cuts every cell into `parts` along each axis; polynomials go through `window` cells, and series have all of
+    /// their modes, of a coarse map some less. `planes` are axes with coordinates at which the derivative jumps.
     pub(super) fn new(
         axes: &[&Axis],
         parts: usize,
-        (window, all_modes): (usize, bool),
+        (window, is_coarse): (usize, bool),
         planes: &[(usize, f64)],
     ) -> Self {
         let lines = axes.iter().enumerate().map(|(index, axis)| {
             if axis.is_modes() {
-                return Lines::of_series(axis, parts, all_modes);
+                return Lines::of_series(axis, parts, is_coarse);
             }
             let own = planes.iter().filter(|(plane, _)| *plane == index);
             let faces: Vec<usize> = own.filter_map(|(_, at)| axis.face_at(*at)).collect();
@@ -137,7 +137,7 @@ impl Lines {
     }
 
     /// Of an axis of modes, each bin over which its density is laid out cut into parts.
-    fn of_series(axis: &Axis, parts: usize, all_modes: bool) -> Self {
+    fn of_series(axis: &Axis, parts: usize, is_coarse: bool) -> Self {
         let bins = layout_axis(axis);
         let count = bins.count() * parts;
         let (from, length) = (bins.from(), bins.to() - bins.from());
@@ -145,9 +145,7 @@ impl Lines {
         let halves = 0..=2 * count;
         let places = halves.map(|half| from + length * half as f64 / (2 * count) as f64);
         let places: Vec<f64> = places.collect();
-        let left_out = if all_modes { 0 } else { LEFT_OUT };
-        let used = axis.count().saturating_sub(left_out).max(1);
-        let weights = axis.series_weights(&places, used);
+        let weights = axis.series_weights(&places, used_modes(axis, is_coarse));
         let pairs = weights.chunks_exact(2 * axis.count());
         let joined = |sign: f64| {
             let of_pair = |pair: &[f64]| -> Vec<f64> {
@@ -250,7 +248,7 @@ mod tests {
             .iter()
             .flat_map(|a| along_y.iter().map(move |b| a * b))
             .collect();
-        let cut = SubCells::new(&[&x, &y], 3, (5, true), &[]);
+        let cut = SubCells::new(&[&x, &y], 3, (5, false), &[]);
         let found = cut.apply(&masses);
         assert_eq!(cut.count(), 36 * 24);
         let mut edges = [(0.0, 0.0); 2];
@@ -278,7 +276,7 @@ mod tests {
             .windows(2)
             .map(|e| below(e[1]) - below(e[0]))
             .collect();
-        let cut = SubCells::new(&[&axis], 4, (5, true), &[(0, 0.0)]);
+        let cut = SubCells::new(&[&axis], 4, (5, false), &[(0, 0.0)]);
         let found = cut.apply(&masses);
         let mut edges = [(0.0, 0.0)];
         for (number, mass) in found[0].iter().enumerate() {

@@ -11,6 +11,9 @@ const NOTHING: f64 = 1e-11;
 /// A new vector this small, relative to what it was before the others were taken out of it, adds nothing.
 const SPANNED: f64 = 1e-12;
 
+/// Cells of a grid so small that a model of all of its vectors costs nothing.
+const SMALL: usize = 64;
+
 /// Modes are looked for that oscillate no faster than this many times the rate of the motion.
 pub(super) const REACH: f64 = 3.0;
 
@@ -31,9 +34,6 @@ const INVERSE_STEPS: usize = 3;
 pub(super) struct Basis {
     pub(super) vectors: Vec<Vec<f64>>,
 }
-
-/// Cells of a grid so small that a model of all of its vectors costs nothing.
-const SMALL: usize = 64;
 
 impl Basis {
     /// Adds what spans all vectors with Σ = 0, where these are few; whether they are.

@@ -17,7 +17,7 @@ use crate::space::{Axis, CellSpace};
 use crate::system::{ParameterValues, System};
 
 /// Harmonics along an angle that slow modes and spectra have at least: densities alone may need fewer.
-const OF_FLUCTUATIONS: usize = 8;
+const HARMONICS_OF_FLUCTUATIONS: usize = 8;
 
 impl Settings {
     /// Finds the ranges and gradings that are left to the program, by free trajectories at both ends of the sweep, and
@@ -237,27 +237,12 @@ impl Settings {
         let questions = &self.family.questions;
         let is_turn = |&axis: &usize| self.axes[axis].series == ModesOf::Turn;
         if (questions.slow_modes > 0 || questions.spectrum.is_some()) && open.iter().any(is_turn) {
-            found.count = found.count.max(OF_FLUCTUATIONS);
+            found.count = found.count.max(HARMONICS_OF_FLUCTUATIONS);
         }
-        let names: Vec<&str> = open.iter().map(|&axis| self.family.axis(axis)).collect();
-        if !found.is_enough && open.iter().any(|&axis| self.may_have_cells(axis)) {
-            let (cut, others): (Vec<usize>, Vec<usize>) =
-                open.iter().partition(|&&axis| self.may_have_cells(axis));
-            let names: Vec<&str> = cut.iter().map(|&axis| self.family.axis(axis)).collect();
-            self.chosen.push(format!(
-                "modes: {} do not do for {}, cut into cells",
-                found.count,
-                names.join(", ")
-            ));
-            for axis in cut {
-                self.axes[axis].modes = None;
-                self.axes[axis].grade = Grade::Auto;
-            }
-            for axis in others {
-                self.axes[axis].modes = Some(Modes::Auto);
-            }
+        if !found.is_enough && self.cut_in_place_of_modes(&open, found.count) {
             return self.find_modes(ends, cancellation);
         }
+        let names: Vec<&str> = open.iter().map(|&axis| self.family.axis(axis)).collect();
         let mut note = format!(
             "modes: {} are chosen for {}; {}",
             found.count,
@@ -277,6 +262,29 @@ impl Settings {
             self.axes[axis].modes = Some(Modes::Number(found.count));
         }
         Ok(true)
+    }
+
+    /// Cuts axes into cells of which so many modes do not do and nobody asked for them; whether there are any. Modes of
+    /// the others are open again.
+    fn cut_in_place_of_modes(&mut self, open: &[usize], count: usize) -> bool {
+        let (cut, others): (Vec<usize>, Vec<usize>) =
+            open.iter().partition(|&&axis| self.may_have_cells(axis));
+        if cut.is_empty() {
+            return false;
+        }
+        let names: Vec<&str> = cut.iter().map(|&axis| self.family.axis(axis)).collect();
+        let names = names.join(", ");
+        self.chosen.push(format!(
+            "modes: {count} do not do for {names}, cut into cells"
+        ));
+        for axis in cut {
+            self.axes[axis].modes = None;
+            self.axes[axis].grade = Grade::Auto;
+        }
+        for axis in others {
+            self.axes[axis].modes = Some(Modes::Auto);
+        }
+        true
     }
 
     /// Whether cells may take the place of modes that nobody asked for: along a state of hysteresis.

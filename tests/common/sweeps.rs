@@ -39,3 +39,10 @@ pub(crate) fn rows<'a>(result: &'a SweepResult, observable: &str) -> Vec<&'a Loc
     rows.filter(|row| row.observable.name(family) == observable)
         .collect()
 }
+
+/// A measure of a solution, and its error.
+pub(crate) fn measure(solution: &Solution<'_>, name: &str) -> (f64, f64) {
+    let found = solution.report.measures.iter().find(|one| one.name == name);
+    let found = found.unwrap_or_else(|| panic!("no measure {name}"));
+    (found.value, found.error.unwrap())
+}

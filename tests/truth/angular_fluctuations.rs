@@ -1,17 +1,9 @@
 //! What fluctuates on a circle: relaxation, spectra, first passage and means of formulas with an angle, against closed
 //! forms.
 
-use crate::common::sweeps::{settings, solved};
+use crate::common::sweeps::{measure, settings, solved};
 use pbif::cancellation::Cancellation;
-use pbif::continuation::Solution;
 use pbif::sweep_file::SweepFile;
-
-/// A measure and its error.
-fn measure(solution: &Solution<'_>, name: &str) -> (f64, f64) {
-    let found = solution.report.measures.iter().find(|one| one.name == name);
-    let found = found.unwrap_or_else(|| panic!("{name}"));
-    (found.value, found.error.unwrap())
-}
 
 /// θ' = v, v' = -g v + τ - force + √(2 g T) ξ at g = 0.5, T = 0.6, with τ swept, and lines of a file after it.
 fn rotor(force: &str, rest: &str) -> String {
@@ -30,14 +22,21 @@ fn a_free_rotor_relaxes_as_its_closed_form_says() {
     // H. Risken, The Fokker-Planck Equation, section 10.3: n g + k² T/g, and k τ/g for the frequency.
     let text = rotor(NONE, "[relaxation]\nmodes = 5\n");
     let (_, solution) = solved(&text, "", Some(0.3));
-    let exact = [(0.5, 0.0), (1.0, 0.0), (1.2, 0.6), (1.5, 0.0), (1.7, 0.6)];
-    for (mode, (decay, frequency)) in exact.into_iter().enumerate() {
+    // Decay rate and frequency, and the largest error that serves; of the last mode fewer cells know less.
+    let exact = [
+        (0.5, 0.0, 1e-3),
+        (1.0, 0.0, 1e-3),
+        (1.2, 0.6, 1e-3),
+        (1.5, 0.0, 1e-3),
+        (1.7, 0.6, 0.05),
+    ];
+    for (mode, (decay, frequency, largest)) in exact.into_iter().enumerate() {
         for (name, exact) in [("rate", decay), ("frequency", frequency)] {
             let (value, error) = measure(&solution, &format!("decay_{name}_{}", mode + 1));
             let off = (value - exact).abs();
             // A frequency of zero has no error.
             assert!(off <= error + 1e-12, "{mode} {name}: {off:e} of {error:e}");
-            assert!(error < 0.05, "{mode} {name}: {error:e}");
+            assert!(error < largest, "{mode} {name}: {error:e}");
         }
     }
 }

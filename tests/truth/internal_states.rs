@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use crate::common::steady::solve;
-use crate::common::sweeps::{prepared, solved};
+use crate::common::sweeps::{measure, prepared, solved};
 use nalgebra::{DMatrix, DVector};
 use pbif::cancellation::Cancellation;
 use pbif::continuation::PointStatus;
@@ -248,11 +248,7 @@ fn means_of_formulas_with_a_friction_state_keep_its_balance() {
                  watch.power=\"z*y\" watch.loss=\"abs(y)*z^2\" watch.square=\"z^2\"";
     let text = include_str!("../../sweeps/dahl_alpha.toml");
     let (_, solution) = solved(text, words, None);
-    let known = |name: &str| {
-        let mut measures = solution.report.measures.iter();
-        let found = measures.find(|one| one.name == name).unwrap();
-        (found.value, found.error.unwrap())
-    };
+    let known = |name: &str| measure(&solution, name);
     let ratio = 0.06 / 0.05;
     let ((power, of_power), (loss, of_loss)) = (known("mean_power"), known("mean_loss"));
     let off = (power - ratio * loss).abs();
@@ -284,11 +280,7 @@ fn a_typed_state_of_hysteresis_has_its_bounds_and_modes_without_being_asked() {
     let (sweep, solution) = solved(BOUC_WEN, cells, None);
     let axis = &sweep.problem.space().axes()[2];
     assert!(axis.is_modes() && (axis.to() - 1.5).abs() < 1e-12 && axis.from() == -axis.to());
-    let known = |name: &str| {
-        let mut measures = solution.report.measures.iter();
-        let found = measures.find(|one| one.name == name).unwrap();
-        (found.value, found.error.unwrap())
-    };
+    let known = |name: &str| measure(&solution, name);
     let ((power, of_power), (loss, of_loss)) = (known("mean_power"), known("mean_loss"));
     let off = (1.2 * power - loss).abs();
     let error = 1.2 * of_power + of_loss;

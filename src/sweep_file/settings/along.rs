@@ -46,7 +46,7 @@ impl<'a> SweptSystems<'a> {
         !self.corners.is_empty() && corners.all(relaxes)
     }
 
-    /// Whether an axis has bounds that are the same at all corners.
+    /// Whether an axis has bounds that are the same wherever along the sweep it is looked at.
     pub(super) fn has_still_bounds(&self, axis: usize) -> bool {
         let mut known = self.corners.iter().map(|one| one.facts().bounds(axis));
         let first = known.next().flatten();

@@ -30,10 +30,9 @@ impl Reader<'_> {
         rough.extend(noise.iter().flatten());
         let (surfaces, notes) = self.surfaces(&rough)?;
         let is_turn = |axis: usize| turns.of_axes.contains_key(&axis);
-        let free =
-            |axis: usize| bounds[axis].is_none() && !is_turn(axis) && !noise_axes.contains(&axis);
-        let relaxation = relaxation::rates(self.scope.graph_mut(), &drift_expressions, &free)?;
         let is_driven = |axis: usize| is_turn(axis) || noise_axes.contains(&axis);
+        let free = |axis: usize| bounds[axis].is_none() && !is_driven(axis);
+        let relaxation = relaxation::rates(self.scope.graph_mut(), &drift_expressions, &free)?;
         let paths = drift_expressions.iter().enumerate();
         let paths = paths.map(|(axis, &drift)| {
             let path = hysteresis::path_of(self.scope.graph(), drift, axis);
