@@ -208,23 +208,8 @@ fn has_densities(problem: &Problem) -> Result<(), MethodError> {
     for system in problem.family().along()? {
         system.facts().autonomous()?;
     }
+    check_questions(problem)?;
     let family = problem.family();
-    let asks = !family.questions.passages.is_empty()
-        || family.questions.slow_modes > 0
-        || family.questions.spectrum.is_some();
-    if asks && family.model().phase_axis().is_some() {
-        return Err(MethodError::ForcedQuestion);
-    }
-    let space = problem.space();
-    check_regions(problem)?;
-    let has_series = space.axes().iter().any(crate::space::Axis::is_modes);
-    let has_fields = family.fields().next().is_some();
-    let passages = &family.questions.passages;
-    let has_transitions = passages.iter().any(|one| one.transitions.is_some());
-    if has_fields && space.dimension() > 2 || (has_fields || has_transitions) && has_series {
-        let axes = space.dimension();
-        return Err(MethodError::FieldAxes { axes, has_series });
-    }
     let (from, to) = family.ends();
     for value in [from, 0.5 * (from + to), to] {
         let system = family.at(value)?;
@@ -243,6 +228,31 @@ fn has_densities(problem: &Problem) -> Result<(), MethodError> {
     let axes = problem.space().axes().iter();
     let ranges: Vec<(f64, f64)> = axes.map(|axis| (axis.from(), axis.to())).collect();
     check_sticking(problem.family(), &ranges)
+}
+
+/// Nothing, if what is asked beside densities is worked out for such a system on such cells.
+///
+/// # Errors
+/// [`MethodError::ForcedQuestion`], [`MethodError::RegionOfModes`] or [`MethodError::FieldAxes`].
+pub(crate) fn check_questions(problem: &Problem) -> Result<(), MethodError> {
+    let family = problem.family();
+    let asks = !family.questions.passages.is_empty()
+        || family.questions.slow_modes > 0
+        || family.questions.spectrum.is_some();
+    if asks && family.model().phase_axis().is_some() {
+        return Err(MethodError::ForcedQuestion);
+    }
+    let space = problem.space();
+    check_regions(problem)?;
+    let has_series = space.axes().iter().any(crate::space::Axis::is_modes);
+    let has_fields = family.fields().next().is_some();
+    let passages = &family.questions.passages;
+    let has_transitions = passages.iter().any(|one| one.transitions.is_some());
+    if has_fields && space.dimension() > 2 || (has_fields || has_transitions) && has_series {
+        let axes = space.dimension();
+        return Err(MethodError::FieldAxes { axes, has_series });
+    }
+    Ok(())
 }
 
 /// Nothing, if no border of a region of a passage runs through an axis of modes.

@@ -11,7 +11,7 @@ use super::sweep::Sweep;
 use crate::cancellation::Cancellation;
 use crate::method::{
     KnownEnds, Problem, RangeError, SgcmOptions, automatic_modes, automatic_ranges,
-    change_by_more_modes, check_sticking, highest_frequency, pilot_box,
+    change_by_more_modes, check_questions, check_sticking, highest_frequency, pilot_box,
 };
 use crate::space::{Axis, CellSpace};
 use crate::system::{ParameterValues, System};
@@ -61,6 +61,8 @@ impl Settings {
         self.find_frequencies(cancellation)?;
         tell("laying out the cells");
         let sweep = self.fixed()?;
+        check_questions(&sweep.problem)
+            .map_err(|error| sweep.settings.refuse(Diagnostic::new(error.to_string())))?;
         sweep.settings.check_factors(&sweep)?;
         Ok(sweep)
     }

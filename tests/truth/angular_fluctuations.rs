@@ -130,7 +130,9 @@ fn regions_that_an_angle_bounds_and_questions_under_a_force_are_refused_with_a_w
     };
     let region =
         "[passage]\nover = { until = \"cos(theta) < -0.5\", start = { theta = 0, v = 0 } }\n";
-    let message = refused(&rotor("sin(theta)", region));
+    // Also where all counts are given, so that nothing is tried beforehand.
+    let cells = "[cells]\ntheta = { modes = 6 }\nv = { from = -5, to = 5, count = 40 }\n";
+    let message = refused(&rotor("sin(theta)", &format!("{cells}{region}")));
     assert!(
         message.contains("depends on `theta`") && message.contains("monte-carlo"),
         "{message}"
