@@ -1,5 +1,6 @@
 //! A range that holds the density, found by free trajectories: the box is doubled until they stay in it, shrunk while
-//! they fill only a corner of it, and given a margin. An end that is given stays where it is.
+//! they fill only a corner of it, and given a margin. An end that is given stays where it is. Where no box holds them,
+//! as many that begin far from the density go to infinity, trajectories are followed from where they begin.
 
 use std::sync::Arc;
 
@@ -8,6 +9,9 @@ use crate::cancellation::Cancellation;
 use crate::sampling::pilot;
 use crate::space::{Axis, CellSpace};
 use crate::system::{Enclosed, System};
+
+mod followed;
+use followed::followed;
 
 /// Where trajectories start along an axis of which nothing is known.
 const PILOT_BOX: (f64, f64) = (-1.0, 1.0);
@@ -61,6 +65,9 @@ pub(crate) enum RangeError {
     #[error(transparent)]
     Cancelled(#[from] crate::cancellation::Cancelled),
 }
+
+/// The ranges that one way of looking for them finds, if any.
+type MayFind = Result<Option<Vec<(f64, f64)>>, RangeError>;
 
 /// The lower and the upper end of an axis, as far as they are known.
 pub(crate) type KnownEnds = [Option<f64>; 2];
@@ -118,7 +125,7 @@ pub(crate) fn automatic_ranges(
     let mut hull: Option<Vec<(f64, f64)>> = None;
     for (number, system) in systems.iter().enumerate() {
         let system = between_given_ends(system, known);
-        let found = ranges_of((number, system.as_ref()), known, seed, cancellation)?;
+        let found = range_of((number, system.as_ref()), known, seed, cancellation)?;
         hull = Some(match hull {
             None => found,
             Some(hull) => hull
@@ -162,15 +169,39 @@ fn alike(systems: &[Arc<dyn System>], known: &[KnownEnds], hull: &mut [(f64, f64
     }
 }
 
-/// The ranges of one system. An axis along which all trajectories end in one point has both ends there, and the others
-/// hold what was visited; the solve tells that there is no density.
-fn ranges_of(
+/// The ranges of one system, by boxes, or by following trajectories where these go to infinity from the ends of boxes,
+/// or take steps there that are too short to settle.
+fn range_of(
     (number, system): (usize, &dyn System),
     known: &[KnownEnds],
     seed: u64,
     cancellation: &Cancellation,
 ) -> Result<Vec<(f64, f64)>, RangeError> {
+    let follow = || followed(system, known, seed, cancellation);
+    let mut is_new = true;
+    let found = ranges_of((number, system), known, (seed, cancellation), &mut || {
+        is_new = false;
+        follow()
+    });
+    match found {
+        Err(error @ (RangeError::RunsAway { .. } | RangeError::TooLong { .. })) if is_new => {
+            follow()?.ok_or(error)
+        }
+        found => found,
+    }
+}
+
+/// The ranges of one system. An axis along which all trajectories end in one point has both ends there, and the others
+/// hold what was visited; the solve tells that there is no density. Where trajectories may not settle in a box,
+/// `follow` is asked once.
+fn ranges_of(
+    (number, system): (usize, &dyn System),
+    known: &[KnownEnds],
+    (seed, cancellation): (u64, &Cancellation),
+    follow: &mut dyn FnMut() -> MayFind,
+) -> Result<Vec<(f64, f64)>, RangeError> {
     let (mut steps, mut leaving) = (0, 0);
+    let mut may_settle = true;
     let mut shrunk = vec![0; known.len()];
     let mut ranges: Vec<(f64, f64)> = known.iter().copied().map(pilot_box).collect();
     for _ in 0..MOST_CHANGES {
@@ -190,6 +221,12 @@ fn ranges_of(
         }
         let seen = pilot(system, &space, seed, cancellation)?;
         steps += seen.steps;
+        if may_settle && !seen.may_settle {
+            may_settle = false;
+            if let Some(found) = follow()? {
+                return Ok(found);
+            }
+        }
         leaving = free()
             .rev()
             .max_by_key(|&axis| seen.outside[axis])

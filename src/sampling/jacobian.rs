@@ -38,8 +38,19 @@ pub(super) fn local_rates(
     positions: &[Position],
 ) -> Option<LocalRates> {
     let cell = space.find(state)?;
-    let dimension = state.len();
     let width = |axis: usize| space.axes()[axis].width(space.position(cell, axis));
+    rates_of_lengths(system, &width, state, positions)
+}
+
+/// Rates at a state, from differences over a thousandth of a length of each axis; `None` next to a switching surface,
+/// and where the drift is not finite.
+pub(super) fn rates_of_lengths(
+    system: &dyn System,
+    width: &dyn Fn(usize) -> f64,
+    state: &[f64],
+    positions: &[Position],
+) -> Option<LocalRates> {
+    let dimension = state.len();
     for surface in &system.facts().switching_surfaces {
         if (state[surface.axis] - surface.at).abs() <= 2.0 * SHARE * width(surface.axis) {
             return None;
@@ -66,7 +77,7 @@ pub(super) fn local_rates(
     let of_rest = jacobian.select_rows(&rest).select_columns(&rest);
     let of = |matrix| Some(Schur::try_new(matrix, 1e-12, 1000)?.complex_eigenvalues());
     let largest = |of: &DVector<Complex<f64>>| of.iter().map(|one| one.norm()).fold(0.0, f64::max);
-    let kicks = noise_rate(system, state, &width);
+    let kicks = noise_rate(system, state, width);
     let eigenvalues = of(jacobian)?;
     let fastest = largest(&eigenvalues).max(kicks);
     let split = match positions.is_empty() {

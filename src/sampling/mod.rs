@@ -36,6 +36,7 @@ mod options;
 mod phase;
 mod pilot;
 mod random;
+mod settling;
 mod slopes;
 mod starts;
 mod transition;
@@ -48,6 +49,7 @@ pub use options::SamplingOptions;
 pub(crate) use phase::{frequency_of_forcing, part_of_period};
 pub use pilot::{Pilot, pilot};
 pub(crate) use random::{NormalStream, StreamKey, mix, unit};
+pub(crate) use settling::{hull, settled};
 pub use transition::{SampledTransitions, TransitionMatrix};
 
 /// Why transitions could not be sampled.

@@ -52,6 +52,8 @@ pub struct Pilot {
     pub cells: Vec<usize>,
     /// Steps that each trajectory took.
     pub(crate) steps: usize,
+    /// Whether the trajectories took as many steps as they need to settle.
+    pub(crate) may_settle: bool,
     /// Recorded states beyond the range of each axis.
     pub(crate) outside: Vec<usize>,
     /// Share of the recorded states that lie in Ω; without any, what follows is of Ω as a whole.
@@ -222,7 +224,8 @@ pub fn pilot(
     } else {
         3.0 * periods
     };
-    let steps = ((settling / step) as usize).clamp(RECORDS, MOST_STEPS);
+    let wanted = (settling / step) as usize;
+    let steps = wanted.clamp(RECORDS, MOST_STEPS);
     let stepper = Stepper::new(system, Integrator::StochasticHeun, step, cancellation);
     let run = |batch: u64| trajectories(&stepper, system, space, seed, batch, steps);
     let records: Result<Vec<Record>, _> = (0..BATCHES).into_par_iter().map(run).collect();
@@ -235,7 +238,10 @@ pub fn pilot(
         let seen = nothing_stays(system, space, seed, (scouted, 2 * steps));
         return Ok(Pilot { outside, ..seen });
     }
-    Ok(record.finish(2 * steps))
+    Ok(Pilot {
+        may_settle: wanted <= MOST_STEPS,
+        ..record.finish(2 * steps)
+    })
 }
 
 /// The rate at which noise takes a state across a fair part of the range of an axis, the largest of all. It is slower

@@ -163,3 +163,67 @@ fn a_system_whose_paths_end_in_a_point_says_nothing_of_ranges() {
     assert!(x.0 < 4.5 && x.1 > 5.5 && x.1 - x.0 < 3.0, "{x:?}");
     assert!(y.1 > 2.5 && y.1 < 5.0, "{y:?}");
 }
+
+/// The range of x, which holds all but a millionth of exp(-potential/temperature) on either side, and is no more than
+/// twice as long as that takes.
+fn holds_and_is_not_wide(
+    system: Arc<dyn System>,
+    potential: &dyn Fn(f64) -> f64,
+    (temperature, middle): (f64, f64),
+) {
+    let axes = system.dimension();
+    let found = automatic_ranges(&[system], &vec![[None; 2]; axes], 1, &Cancellation::new());
+    let (from, to) = found.unwrap()[0];
+    let density = |x: f64| ((potential(middle) - potential(x)) / temperature).exp();
+    // What lies beyond the range is looked at as far again.
+    let (begin, step) = (2.0 * from - to, 3.0 * (to - from) / 30_000.0);
+    let place = |n: i32| begin + (f64::from(n) + 0.5) * step;
+    let all: f64 = (0..30_000).map(|n| density(place(n))).sum();
+    let end_of = |places: &[i32]| {
+        let mut sum = 0.0;
+        places.iter().copied().find(|&n| {
+            sum += density(place(n));
+            sum > 1e-6 * all
+        })
+    };
+    let low = place(end_of(&(0..30_000).collect::<Vec<_>>()).unwrap());
+    let high = place(end_of(&(0..30_000).rev().collect::<Vec<_>>()).unwrap());
+    assert!(from < low && high < to, "{low} to {high}: {from} to {to}");
+    assert!(
+        to - from < 2.0 * (high - low),
+        "{low} to {high}: {from} to {to}"
+    );
+}
+
+#[test]
+fn places_from_which_paths_go_to_infinity_say_nothing_of_ranges() {
+    // A body that radiates: hot from any temperature above zero, and run away below.
+    let typed =
+        TypedModel::new("radiator", "Radiation", ["x"]).with_equation("x", "10 - (x/100)^4");
+    let system = typed
+        .with_noise("x", ["2"])
+        .build()
+        .unwrap()
+        .system_with(&[])
+        .unwrap();
+    let potential = |x: f64| 20.0 * (x / 100.0).powi(5) - 10.0 * x;
+    holds_and_is_not_wide(system, &potential, (2.0, 100.0 * 10_f64.powf(0.25)));
+}
+
+#[test]
+fn places_where_steps_are_far_too_short_say_nothing_of_ranges() {
+    let particle = |force: &str, damping: f64, noise: f64| {
+        let typed = TypedModel::new("particle", "A damped particle", ["x", "v"])
+            .with_equation("x", "v")
+            .with_equation("v", format!("{force} - {damping} v"));
+        let typed = typed.with_noise("v", [noise.to_string()]);
+        typed.build().unwrap().system_with(&[]).unwrap()
+    };
+    // A molecule in Morse's potential, held by a weak spring: the force grows exponentially on one side.
+    let morse = |x: f64| (1.0 - (-x).exp()).powi(2) + 0.01 * x * x;
+    let force = "-2 (1 - exp(-x)) exp(-x) - 0.02 x";
+    holds_and_is_not_wide(particle(force, 0.2, 0.3), &morse, (0.09 / 0.4, 0.0));
+    // A spring that is soft within two lengths and hard beyond.
+    let hard = |x: f64| x.powi(12) / 12.0;
+    holds_and_is_not_wide(particle("-x^11", 0.1, 0.5), &hard, (0.25 / 0.2, 0.0));
+}

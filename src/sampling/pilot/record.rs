@@ -128,6 +128,7 @@ impl Record {
         let crossing = crossing.filter(|rate| rate.is_finite()).fold(0.0, f64::max);
         Pilot {
             steps,
+            may_settle: true,
             outside: self.outside,
             share_inside: self.inside as f64 / self.visits.max(1) as f64,
             standard_deviation,
