@@ -34,6 +34,9 @@ pub(super) struct Piece {
     pub(super) terms: Vec<(f64, f64, f64)>,
     pub(super) raw_from: f64,
     pub(super) scale: f64,
+    /// Cells that the law lacks, or has too many of: their density is largest in the middle, and zero with its slope
+    /// at both ends.
+    pub(super) more: f64,
 }
 
 impl Piece {
@@ -68,17 +71,45 @@ impl Piece {
             terms: terms.to_vec(),
             raw_from,
             scale: cells.1 as f64 / span,
+            more: 0.0,
         }
+    }
+
+    /// The same cells by the law times a scale, and what this lacks.
+    pub(super) fn with_scale(self, scale: f64) -> Self {
+        let span = Self::raw(self.bulk, &self.terms, self.to) - self.raw_from;
+        Self {
+            scale,
+            more: self.cells as f64 - scale * span,
+            ..self
+        }
+    }
+
+    /// The share of the stretch that lies below a place.
+    fn share(&self, x: f64) -> f64 {
+        ((x - self.from) / (self.to - self.from)).clamp(0.0, 1.0)
     }
 
     /// Cell coordinate inside the piece: 0 at `from`, `cells` at `to`.
     pub(super) fn coordinate(&self, x: f64) -> f64 {
-        (Self::raw(self.bulk, &self.terms, x) - self.raw_from) * self.scale
+        let by_law = (Self::raw(self.bulk, &self.terms, x) - self.raw_from) * self.scale;
+        if self.more == 0.0 {
+            return by_law;
+        }
+        let share = self.share(x);
+        by_law + self.more * share.powi(3) * (10.0 - 15.0 * share + 6.0 * share * share)
     }
 
     /// dx/du, the width of a cell that would lie evenly about `x`.
     pub(super) fn stretch(&self, x: f64) -> f64 {
-        1.0 / (self.scale * Self::density(self.bulk, &self.terms, x))
+        1.0 / (self.scale * Self::density(self.bulk, &self.terms, x) + self.density_of_more(x))
+    }
+
+    /// The derivative of what is added to the law.
+    pub(super) fn density_of_more(&self, x: f64) -> f64 {
+        let share = self.share(x);
+        let bump = 30.0 * share * share * (1.0 - share).powi(2);
+        self.more * bump / (self.to - self.from)
     }
 
     /// The derivative of the cell coordinate before it is scaled.
@@ -97,7 +128,7 @@ impl Piece {
 
     /// The x with the given cell coordinate, by bisection (used once an edge).
     pub(super) fn inverse(&self, coordinate: f64) -> f64 {
-        if self.terms.is_empty() {
+        if self.terms.is_empty() && self.more == 0.0 {
             return self.from + (self.to - self.from) * coordinate / self.cells as f64;
         }
         let (mut low, mut high) = (self.from, self.to);

@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-use super::reconstruction::{Weights, interpolating};
+use super::reconstruction::{Weights, across_bend, interpolating};
 use crate::density::{EstimatedDensity, Kink};
 use crate::space::Axis;
 
@@ -17,6 +17,9 @@ const REACH: [usize; 3] = [4, 3, 2];
 /// The reconstruction beside a bend: at an end of their windows polynomials of higher degree make more of what the
 /// density is off by in the nearest cells.
 pub(super) const BESIDE_BEND: usize = 2;
+
+/// Cells on either side of a bend, and one-sided terms, in the finer and the rougher reconstruction across it.
+const ACROSS: [(usize, usize); 2] = [(4, 3), (3, 2)];
 
 /// Fewest cells that a window may have.
 const FEWEST: usize = 4;
@@ -115,6 +118,41 @@ impl<'a> Field<'a> {
             };
             let window = self.window(k, at[k], REACH[level])?;
             lines.push(interpolating(axis, window, at[k], orders)?);
+        }
+        Some(Stencil {
+            lines,
+            units: [self.unit(0), self.unit(1)],
+            columns: axes.last().map_or(1, Axis::count),
+        })
+    }
+
+    /// The stencil of value and slope at a place on a plane across an axis where the density bends, from cells on both
+    /// sides; none where these are too few, or another plane is among them, and where the plane cuts a cell, which
+    /// belongs to neither side.
+    pub(super) fn stencil_across(
+        &self,
+        at: &[f64],
+        across: usize,
+        level: usize,
+    ) -> Option<Stencil> {
+        let axes = self.axes();
+        let axis = axes.get(across)?;
+        let (reach, terms) = ACROSS[level];
+        let face = axis.face_at(at[across])?;
+        let cells = face.checked_sub(reach)?..face + reach;
+        let ends = *axis.edges().get(cells.start)?..*axis.edges().get(cells.end)?;
+        let kinks = self.estimated.structure.kinks.iter();
+        let mut others = kinks.filter(|kink| kink.axis == across && kink.at != at[across]);
+        if others.any(|kink| ends.contains(&kink.at)) {
+            return None;
+        }
+        let mut lines = Vec::with_capacity(axes.len());
+        for (k, axis) in axes.iter().enumerate() {
+            lines.push(if k == across {
+                across_bend(axis, cells.clone(), at[k], terms)?
+            } else {
+                interpolating(axis, self.window(k, at[k], REACH[level])?, at[k], 2)?
+            });
         }
         Some(Stencil {
             lines,

@@ -89,17 +89,48 @@ pub(super) fn smoothing(
     degree: usize,
     orders: usize,
 ) -> Option<Vec<Weights>> {
-    if cells.len() <= degree || degree + 1 < orders || cells.end > axis.count() {
+    nearest(axis, cells, at, (degree, 0), orders)
+}
+
+/// Lines for p and p' at a place where the curvature jumps: a polynomial through the averages over cells on both sides,
+/// with so many of the terms (x - at)²₊, (x - at)³₊ and so on. Of what single cells are off by it takes less than a
+/// polynomial through the cells of one side does at its end: of cells of one width a half to a tenth.
+pub(super) fn across_bend(
+    axis: &Axis,
+    cells: Range<usize>,
+    at: f64,
+    terms: usize,
+) -> Option<Vec<Weights>> {
+    let degree = cells.len().checked_sub(terms + 1)?;
+    nearest(axis, cells, at, (degree, terms), 2)
+}
+
+/// Lines for the polynomial of a degree, and so many one-sided powers from the square on, nearest to the averages.
+fn nearest(
+    axis: &Axis,
+    cells: Range<usize>,
+    at: f64,
+    (degree, terms): (usize, usize),
+    orders: usize,
+) -> Option<Vec<Weights>> {
+    let functions = degree + 1 + terms;
+    if cells.len() < functions || degree + 1 < orders || cells.end > axis.count() {
         return None;
     }
     let edges = &axis.edges()[cells.start..=cells.end];
     let scale = (edges[cells.len()] - at).abs().max((edges[0] - at).abs());
     let power = |edge: f64, k: usize| ((edge - at) / scale).powi(k as i32 + 1) / (k + 1) as f64;
-    let average = |cell: usize, k: usize| {
-        let width = (edges[cell + 1] - edges[cell]) / scale;
-        (power(edges[cell + 1], k) - power(edges[cell], k)) / width
+    let average = |cell: usize, function: usize| {
+        let [from, to] = [edges[cell], edges[cell + 1]];
+        let width = (to - from) / scale;
+        if function <= degree {
+            (power(to, function) - power(from, function)) / width
+        } else {
+            let k = function - degree + 1;
+            (power(to.max(at), k) - power(from.max(at), k)) / width
+        }
     };
-    let matrix = DMatrix::from_fn(cells.len(), degree + 1, average);
+    let matrix = DMatrix::from_fn(cells.len(), functions, average);
     let inverse = matrix.pseudo_inverse(1e-13).ok()?;
     let mut factor = 1.0;
     let mut lines = Vec::with_capacity(orders);

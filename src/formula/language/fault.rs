@@ -150,6 +150,30 @@ fn in_words(character: char) -> String {
     }
 }
 
+/// What stands for a function that other languages, or papers, have.
+fn instead_of(name: &str) -> Option<&'static str> {
+    Some(match name.to_lowercase().as_str() {
+        "h" | "u" | "heaviside" | "unitstep" => "`step(x)` for the unit step",
+        "signum" => "`sign(x)`",
+        "fabs" => "`abs(x)`",
+        "power" => "`x^2` or `pow(x, 2)`",
+        "tg" => "`tan(x)`",
+        "arcsin" => "`asin(x)`",
+        "arccos" => "`acos(x)`",
+        "arctan" | "arctg" => "`atan(x)`",
+        "sec" => "`1/cos(x)`",
+        "csc" => "`1/sin(x)`",
+        "cot" => "`1/tan(x)`",
+        "sech" => "`1/cosh(x)`",
+        "csch" => "`1/sinh(x)`",
+        "coth" => "`1/tanh(x)`",
+        "asinh" | "arcsinh" | "arsinh" => "`log(x + sqrt(x^2 + 1))`",
+        "acosh" | "arccosh" | "arcosh" => "`log(x + sqrt(x^2 - 1))`",
+        "atanh" | "arctanh" | "artanh" => "`log((1 + x)/(1 - x))/2`",
+        _ => return None,
+    })
+}
+
 impl FormulaError {
     pub(crate) fn new(span: Range<usize>, fault: Fault) -> Self {
         Self { span, fault }
@@ -198,10 +222,11 @@ impl FormulaError {
             } => {
                 return Some(format!("write `{name} (…)` or `{name}*(…)` for a product"));
             }
-            Fault::NotAFunction { nearest, .. } => {
-                return nearest
-                    .as_ref()
-                    .map(|name| format!("did you mean `{name}`?"));
+            Fault::NotAFunction { name, nearest, .. } => {
+                let nearest = || Some(format!("did you mean `{}`?", nearest.as_ref()?));
+                return instead_of(name)
+                    .map(|words| format!("write {words}"))
+                    .or_else(nearest);
             }
             Fault::Parentheses { function } => {
                 return Some(format!("write {}", function.example()));

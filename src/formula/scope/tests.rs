@@ -148,6 +148,8 @@ fn unknown_names_come_with_what_is_near() {
         ("κy", "κy", "did you mean the product `kappa y`?"),
         ("X + y", "X", "did you mean `x`?"),
         ("sine(x)", "sine", "did you mean `sin`?"),
+        ("H(x)", "H", "write `step(x)` for the unit step"),
+        ("arctan(x)", "arctan", "write `atan(x)`"),
         (
             "f_c(x)",
             "f_c",

@@ -14,7 +14,11 @@ impl Axis {
             let terms = piece.terms.iter();
             let terms: Vec<_> = terms.map(|&(a, at, width)| (a, at + by, width)).collect();
             let ends = (piece.from + by, piece.to + by);
-            Piece::new(ends, (piece.first_cell, piece.cells), piece.bulk, &terms)
+            let moved = Piece::new(ends, (piece.first_cell, piece.cells), piece.bulk, &terms);
+            match piece.more == 0.0 {
+                true => moved,
+                false => moved.with_scale(piece.scale),
+            }
         });
         Self::from_pieces(pieces.collect())
     }
