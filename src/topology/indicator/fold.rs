@@ -318,9 +318,9 @@ mod tests {
         }
     }
 
-    /// The error stated is the difference of two reconstructions, of which the worse one is off by more than that where
-    /// both are off to one side. Read on one side alone, by cubics through four cells, the slope is off by 0.05 on the
-    /// uniform cells.
+    /// What the finer reconstruction is off by is less than what the rougher one differs by where cells are of one width,
+    /// and about as much where they are not. Read on one side alone, by cubics through four cells, the slope is off by
+    /// 0.05 on the uniform cells.
     #[test]
     fn where_a_force_bends_the_slope_is_read_from_cells_on_both_sides() {
         let grading = Grading {
@@ -338,7 +338,7 @@ mod tests {
                 let error = (found.value / (axis.to() - axis.from()) - exact).abs();
                 let stated = found.systematic_error / (axis.to() - axis.from());
                 assert!(
-                    error < 2.0 * stated + 1e-12,
+                    error < 1.5 * stated + 1e-12,
                     "{} {theta}: {error} {stated}",
                     axis.count()
                 );
