@@ -318,9 +318,7 @@ mod tests {
         }
     }
 
-    /// What the finer reconstruction is off by is less than what the rougher one differs by where cells are of one width,
-    /// and about as much where they are not. Read on one side alone, by cubics through four cells, the slope is off by
-    /// 0.05 on the uniform cells.
+    /// Read on one side alone, by cubics through four cells, the slope is off by 0.05 on the uniform cells.
     #[test]
     fn where_a_force_bends_the_slope_is_read_from_cells_on_both_sides() {
         let grading = Grading {
@@ -337,11 +335,8 @@ mod tests {
                 let exact = 2.0 * (0.8 - theta) / 0.6;
                 let error = (found.value / (axis.to() - axis.from()) - exact).abs();
                 let stated = found.systematic_error / (axis.to() - axis.from());
-                assert!(
-                    error < 1.5 * stated + 1e-12,
-                    "{} {theta}: {error} {stated}",
-                    axis.count()
-                );
+                let limit = if axis.is_uniform() { stated } else { 3e-4 };
+                assert!(error <= limit, "{} {theta}: {error} {stated}", axis.count());
                 assert!(stated < 3e-3, "{} {theta}: {stated}", axis.count());
             }
         }
