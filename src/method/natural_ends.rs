@@ -8,6 +8,10 @@ use crate::system::{System, largest_power, may_stay};
 /// Mass in the cells beside an end that is worth a finding.
 const LIMIT: f64 = 1e-3;
 
+/// Mass in those cells beyond which it is all that there is: a density with a power above -0.92 has less there where
+/// cells narrow to a ten-thousandth of its width.
+const MOST: f64 = 0.5;
+
 /// Cells from whose densities the power is read, by their number from the end: in the outermost ones it is what the end
 /// of the grid makes of it.
 const READ: [usize; 2] = [2, 6];
@@ -49,8 +53,20 @@ pub(super) fn findings(
                 let distance = (cells.centre(cell) - at).abs();
                 (distance.ln(), (along[cell] / cells.width(cell)).ln())
             };
-            let [near, far] = READ.map(place);
-            let exponent = (far.1 - near.1) / (far.0 - near.0);
+            let power = |[near, far]: [usize; 2]| {
+                let [near, far] = [near, far].map(place);
+                let found = (far.1 - near.1) / (far.0 - near.0);
+                if found.is_nan() {
+                    f64::NEG_INFINITY
+                } else {
+                    found
+                }
+            };
+            // Where most of the mass is in the outermost cells, the others may hold less than the solver leaves.
+            let exponent = match mass > MOST {
+                true => power(READ).min(power([0, READ[0]])),
+                false => power(READ),
+            };
             let is_absorbed =
                 exponent <= -1.0 && may_stay(system, &space.ranges(), natural, (axis, end));
             found.push(if is_absorbed {
@@ -106,6 +122,32 @@ mod tests {
             .with_interpretation(Interpretation::Ito);
         let system = typed.build().unwrap().system_with(&[]).unwrap();
         findings(system.as_ref(), &space, &masses, &natural)
+    }
+
+    /// What is left beside a point mass at the end is noise of the solver, negative in places.
+    #[test]
+    fn mass_that_is_all_at_an_end_is_absorbed_there() {
+        let axis = Axis::uniform(0.0, 1.0, 20).unwrap();
+        let space = CellSpace::new(vec![axis, Axis::uniform(-1.0, 1.0, 2).unwrap()]).unwrap();
+        let mut masses = vec![1e-4, -1e-4].repeat(20);
+        (masses[0], masses[1]) = (0.5, 0.5);
+        let typed = TypedModel::new("typed", "A typed system", ["x", "y"])
+            .with_equation("x", "x (1 - x) y")
+            .with_equation("y", "-y")
+            .with_noise("x", ["0.1 x"])
+            .with_noise("y", ["0.2"])
+            .with_interpretation(Interpretation::Ito);
+        let system = typed.build().unwrap().system_with(&[]).unwrap();
+        let found = findings(
+            system.as_ref(),
+            &space,
+            &masses,
+            &[[true, false], [false; 2]],
+        );
+        assert!(
+            matches!(found[..], [Finding::Absorbed { axis: 0, .. }]),
+            "{found:?}"
+        );
     }
 
     #[test]

@@ -77,10 +77,7 @@ pub(crate) fn settled(
         .into_par_iter()
         .map(|number| run(number, middle))
         .collect();
-    for batch in others? {
-        let Some((batch, _)) = batch else {
-            return Ok(None);
-        };
+    for (batch, _) in others?.into_iter().flatten() {
         all.passed = hull(&all.passed, &batch.passed);
         all.visited = hull(&all.visited, &batch.visited);
     }
