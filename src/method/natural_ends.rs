@@ -129,7 +129,7 @@ mod tests {
     fn mass_that_is_all_at_an_end_is_absorbed_there() {
         let axis = Axis::uniform(0.0, 1.0, 20).unwrap();
         let space = CellSpace::new(vec![axis, Axis::uniform(-1.0, 1.0, 2).unwrap()]).unwrap();
-        let mut masses = vec![1e-4, -1e-4].repeat(20);
+        let mut masses = [1e-4, -1e-4].repeat(20);
         (masses[0], masses[1]) = (0.5, 0.5);
         let typed = TypedModel::new("typed", "A typed system", ["x", "y"])
             .with_equation("x", "x (1 - x) y")
