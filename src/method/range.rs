@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::swap::swaps;
 use crate::cancellation::Cancellation;
-use crate::sampling::pilot;
+use crate::sampling::{hull, pilot};
 use crate::space::{Axis, CellSpace};
 use crate::system::{Enclosed, System};
 
@@ -122,28 +122,24 @@ pub(crate) fn automatic_ranges(
     seed: u64,
     cancellation: &Cancellation,
 ) -> Result<Vec<(f64, f64)>, RangeError> {
-    let mut hull: Option<Vec<(f64, f64)>> = None;
+    let mut all: Option<Vec<(f64, f64)>> = None;
     for (number, system) in systems.iter().enumerate() {
         let system = between_given_ends(system, known);
         let found = range_of((number, system.as_ref()), known, seed, cancellation)?;
-        hull = Some(match hull {
+        all = Some(match all {
             None => found,
-            Some(hull) => hull
-                .iter()
-                .zip(&found)
-                .map(|(a, b)| (a.0.min(b.0), a.1.max(b.1)))
-                .collect(),
+            Some(all) => hull(&all, &found),
         });
     }
-    if let Some(hull) = &mut hull {
+    if let Some(all) = &mut all {
         // A point of all the systems has no length of its own.
         let length = PILOT_BOX.1 - PILOT_BOX.0;
-        for range in hull.iter_mut().filter(|range| range.0 == range.1) {
+        for range in all.iter_mut().filter(|range| range.0 == range.1) {
             *range = (range.0 - 0.5 * length, range.1 + 0.5 * length);
         }
-        alike(systems, known, hull);
+        alike(systems, known, all);
     }
-    let rounded = hull.iter().flatten().zip(known);
+    let rounded = all.iter().flatten().zip(known);
     Ok(rounded
         .map(|(&found, &known)| with_known(outward(found), known))
         .collect())

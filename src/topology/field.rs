@@ -18,12 +18,13 @@ const REACH: [usize; 3] = [4, 3, 2];
 /// density is off by in the nearest cells.
 pub(super) const BESIDE_BEND: usize = 2;
 
-/// Cells on either side of a bend, and one-sided terms, in the finer and the rougher reconstruction across it. With
-/// three terms the finer one is no better than the rougher where the fifth derivative is large, and their difference
-/// says too little.
-const ACROSS: [(usize, usize); 2] = [(4, 2), (3, 2)];
+/// Cells on either side of a bend, and one-sided terms, in reconstructions across it: the one that is read, and two by
+/// which its error is known. It is off by what x⁴ makes on one side. All that differ from it on no more than four cells
+/// differ by one and the same sum of that and of what x⁵ makes, which may be zero: the last one takes a fifth cell.
+const ACROSS: [(usize, usize); 3] = [(4, 2), (3, 2), (5, 3)];
 
-/// Fewest cells that a window may have.
+/// Most cells of a window, and the fewest.
+const MOST_CELLS: usize = 10;
 const FEWEST: usize = 4;
 
 /// Value and derivatives at a point of a density of one or two axes; those along an axis that is not there are zero.
@@ -128,18 +129,22 @@ impl<'a> Field<'a> {
         })
     }
 
-    /// The stencil of value and slope at a place on a plane across an axis where the density bends, from cells on both
-    /// sides; none where these are too few, or another plane is among them, and where the plane cuts a cell, which
-    /// belongs to neither side.
-    pub(super) fn stencil_across(
+    /// Stencils of value and slope at a place on a plane across an axis where the density bends, from cells on both
+    /// sides: that which is read and two others. None where cells are too few, where another plane is among them, and
+    /// where the plane cuts a cell, which belongs to neither side.
+    pub(super) fn stencils_across(&self, at: &[f64], across: usize) -> Option<[Stencil; 3]> {
+        let [read, rough, other] = ACROSS.map(|one| self.stencil_across(at, across, one));
+        Some([read?, rough?, other?])
+    }
+
+    fn stencil_across(
         &self,
         at: &[f64],
         across: usize,
-        level: usize,
+        (reach, terms): (usize, usize),
     ) -> Option<Stencil> {
         let axes = self.axes();
         let axis = axes.get(across)?;
-        let (reach, terms) = ACROSS[level];
         let face = axis.face_at(at[across])?;
         let cells = face.checked_sub(reach)?..face + reach;
         let ends = *axis.edges().get(cells.start)?..*axis.edges().get(cells.end)?;
@@ -153,7 +158,7 @@ impl<'a> Field<'a> {
             lines.push(if k == across {
                 across_bend(axis, cells.clone(), at[k], terms)?
             } else {
-                interpolating(axis, self.window(k, at[k], REACH[level])?, at[k], 2)?
+                interpolating(axis, self.window(k, at[k], reach.min(REACH[0]))?, at[k], 2)?
             });
         }
         Some(Stencil {
@@ -280,7 +285,7 @@ impl Stencil {
         };
         // Along the second axis first: each order once for every row of the window.
         let (first, length) = (rows[0].first, rows[0].weights.len());
-        let mut along = [[0.0; 8]; 4];
+        let mut along = [[0.0; MOST_CELLS]; 4];
         for (order, line) in columns.iter().enumerate().take(4) {
             for (row, slot) in along[order].iter_mut().enumerate().take(length) {
                 let start = (first + row) * self.columns;

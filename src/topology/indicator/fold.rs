@@ -135,20 +135,13 @@ impl AtBend {
     fn indicator(self, estimated: &EstimatedDensity, field: &Field<'_>) -> Option<Indicator> {
         let sign = if self.rises { 1.0 } else { -1.0 };
         let across = self.across;
-        let [fine, rough] = [0, 1].map(|level| self.stencils(field, level));
-        let (fine, rough) = (fine?, rough?);
+        let [fine, rough, other] = self.stencils(field)?;
         let slope = |stencils: &[Stencil], values: &[f64]| {
             let jets = stencils.iter().map(|one| one.jet(values));
             let slopes = jets.map(|jet| jet.first[across] / jet.value);
             sign * slopes.sum::<f64>() / stencils.len() as f64
         };
-        let apart = |values: &[f64]| match fine.as_slice() {
-            [below, above] => {
-                let [below, above] = [below, above].map(|one| one.jet(values));
-                (above.first[across] / above.value - below.first[across] / below.value).abs()
-            }
-            _ => 0.0,
-        };
+        let apart = |values: &[f64]| 2.0 * (slope(&fine, values) - slope(&other, values)).abs();
         let blur = blur(estimated, field, &self.place);
         let mut found = Indicator::derive(
             estimated,
@@ -161,14 +154,19 @@ impl AtBend {
         Some(found)
     }
 
-    /// What the slope is read by: from cells on both sides, or, where those are too few, on either side.
-    fn stencils(&self, field: &Field<'_>, level: usize) -> Option<Vec<Stencil>> {
-        if let Some(both) = field.stencil_across(&self.place, self.across, level) {
-            return Some(vec![both]);
+    /// What the slope is read by: finely, roughly, and otherwise. It is read from cells on both sides, or, where those
+    /// are too few, as the mean of either side, and otherwise on one of them.
+    fn stencils(&self, field: &Field<'_>) -> Option<[Vec<Stencil>; 3]> {
+        if let Some(across) = field.stencils_across(&self.place, self.across) {
+            return Some(across.map(|one| vec![one]));
         }
         let beside = Self::beside(&self.place, self.across, field.unit(self.across));
-        let level = [BESIDE_BEND, 1][level];
-        beside.iter().map(|at| field.stencil(at, level)).collect()
+        let on_sides = |level: usize| -> Option<Vec<Stencil>> {
+            beside.iter().map(|at| field.stencil(at, level)).collect()
+        };
+        let fine = on_sides(BESIDE_BEND)?;
+        let below = fine.first()?.clone();
+        Some([fine, on_sides(1)?, vec![below]])
     }
 }
 
@@ -318,7 +316,9 @@ mod tests {
         }
     }
 
-    /// Read on one side alone, by cubics through four cells, the slope is off by 0.05 on the uniform cells.
+    /// Where errors of several kinds cancel in the differences of reconstructions, these say too little: never on the
+    /// uniform cells, at a tenth of the values on graded ones. Read on one side alone, by cubics through four cells, the
+    /// slope is off by 0.05 on the uniform cells.
     #[test]
     fn where_a_force_bends_the_slope_is_read_from_cells_on_both_sides() {
         let grading = Grading {
@@ -329,16 +329,28 @@ mod tests {
         let uniform = Axis::uniform(-4.8, 4.8, 96).unwrap();
         let finer = [1.5, 2.25].map(|factor| graded.refined(factor));
         for axis in [uniform, graded].iter().chain(&finer) {
-            for theta in [0.7, 0.8, 0.9] {
+            let (mut ratios, mut worst) = (Vec::new(), 0.0_f64);
+            for step in 0..81 {
+                let theta = 0.6 + 0.005 * f64::from(step);
                 let found = fold(&cornered(axis, theta), &[-0.75, 0.05]).unwrap();
                 assert_eq!(found.place[0], -0.8);
                 let exact = 2.0 * (0.8 - theta) / 0.6;
-                let error = (found.value / (axis.to() - axis.from()) - exact).abs();
-                let stated = found.systematic_error / (axis.to() - axis.from());
-                let limit = if axis.is_uniform() { stated } else { 3e-4 };
-                assert!(error <= limit, "{} {theta}: {error} {stated}", axis.count());
-                assert!(stated < 3e-3, "{} {theta}: {stated}", axis.count());
+                let length = axis.to() - axis.from();
+                let error = (found.value / length - exact).abs();
+                ratios.push(error / (found.systematic_error / length));
+                worst = worst.max(error);
             }
+            let exceeded = ratios.iter().filter(|ratio| **ratio > 1.0).count();
+            let allowed = if axis.is_uniform() {
+                0
+            } else {
+                ratios.len() / 8
+            };
+            assert!(
+                exceeded <= allowed && worst < 3e-4,
+                "{}: {exceeded} {worst}",
+                axis.count()
+            );
         }
     }
 }
