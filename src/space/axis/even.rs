@@ -166,8 +166,8 @@ mod tests {
         }
     }
 
-    /// The law would have to be bent too much over the whole range: the middle stretch holds nearly a cell more than the
-    /// law gives it.
+    /// The law would have to be bent too much over the whole range: the middle stretch holds nearly a cell more than
+    /// the law gives it.
     #[test]
     fn widths_of_graded_cells_are_one_where_stretches_meet() {
         let grading = Grading {

@@ -316,9 +316,9 @@ mod tests {
         }
     }
 
-    /// Where errors of several kinds cancel in the differences of reconstructions, these say too little: never on the
-    /// uniform cells, at a tenth of the values on graded ones. Read on one side alone, by cubics through four cells, the
-    /// slope is off by 0.05 on the uniform cells.
+    /// Where errors of several kinds cancel in the differences of reconstructions, these say too little: never on
+    /// the uniform cells, at a tenth of the values on graded ones. Read on one side alone, by cubics through four
+    /// cells, the slope is off by 0.05 on the uniform cells.
     #[test]
     fn where_a_force_bends_the_slope_is_read_from_cells_on_both_sides() {
         let grading = Grading {
