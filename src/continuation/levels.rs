@@ -78,6 +78,8 @@ struct Excess {
     over: f64,
     error: f64,
     is_judged: bool,
+    /// Whether the solved value before it has the measure, too.
+    follows: bool,
 }
 
 /// The root of a polynomial through samples.
@@ -89,8 +91,11 @@ struct Root {
     interpolation: f64,
     /// The error of the measure over its slope.
     of_measure: f64,
-    /// Whether the measure does not go to zero from either side, as where another mode becomes the slowest.
+    /// Whether the measure does not go to zero from either side, as where another mode becomes the slowest, so far as
+    /// samples tell.
     is_jump: bool,
+    /// The sample that is the only one on its side, where the other side alone does not tell that it is no jump.
+    alone: Option<f64>,
 }
 
 impl Root {
@@ -171,34 +176,43 @@ pub(super) fn crossings(
 
 /// The value to solve next, where interpolation leaves more than is wanted.
 pub(super) fn next_value(points: &[Point], asked: &[MeasureLevel], tolerance: f64) -> Option<f64> {
-    let roots = asked
-        .iter()
-        .flat_map(|asked| roots(&samples(points, asked, 1.0)));
+    let all = || {
+        let each = asked.iter();
+        each.flat_map(|asked| roots(&samples(points, asked, 1.0)))
+    };
     let mut wide =
-        roots.filter(|root| root.interpolation > INTERPOLATED * tolerance.max(root.of_measure));
-    wide.find_map(|root| {
+        all().filter(|root| root.interpolation > INTERPOLATED * tolerance.max(root.of_measure));
+    let inside = |value: f64, root: &Root| {
+        let [a, b] = root.ends.map(|end| end.at);
+        (value > a && value < b).then_some(value)
+    };
+    let wanted = wide.find_map(|root| {
         let [a, b] = root.ends.map(|end| end.at);
         let aside = 0.05 * (b - a);
-        let value = root.value.clamp(a + aside, b - aside);
-        (value > a && value < b).then_some(value)
-    })
+        inside(root.value.clamp(a + aside, b - aside), &root)
+    });
+    let told = |root: Root| inside(0.5 * (root.alone? + root.value), &root);
+    wanted.or_else(|| all().find_map(told))
 }
 
 /// The measure at all points that have it, so many of its errors at each being believed to hold the true one.
 fn samples(points: &[Point], asked: &MeasureLevel, limit: f64) -> Vec<Excess> {
-    let known = points.iter().filter_map(|point| {
-        let one = measure_of(&point.report, asked)?;
-        Some((point.value, one))
+    let each = points.iter().map(|point| measure_of(&point.report, asked));
+    let each: Vec<Option<&Measure>> = each.collect();
+    let known = (points.iter().zip(&each).enumerate()).filter_map(|(number, (point, one))| {
+        let follows = number > 0 && each[number - 1].is_some();
+        Some((point.value, (*one)?, follows))
     });
-    let known: Vec<(f64, &Measure)> = known.collect();
-    let is_ratio = asked.level > 0.0 && known.iter().all(|(_, one)| one.value > 0.0);
-    let sample = |(at, one): (f64, &Measure)| {
+    let known: Vec<(f64, &Measure, bool)> = known.collect();
+    let is_ratio = asked.level > 0.0 && known.iter().all(|(_, one, _)| one.value > 0.0);
+    let sample = |(at, one, follows): (f64, &Measure, bool)| {
         let (over, error) = over(one, asked.level, is_ratio);
         Excess {
             at,
             over,
             error: limit * error,
             is_judged: one.error.is_some(),
+            follows,
         }
     };
     known.into_iter().map(sample).collect()
@@ -239,6 +253,7 @@ fn roots(samples: &[Excess]) -> Vec<Root> {
         let width = ends[1].at - ends[0].at;
         let step = 1e-3 * width;
         let slope = (through(many, value + step) - through(many, value - step)) / (2.0 * step);
+        let (is_jump, alone) = jump(samples, left, value);
         Root {
             value,
             interpolation: match samples.len() {
@@ -246,26 +261,38 @@ fn roots(samples: &[Excess]) -> Vec<Root> {
                 _ => (root(few, ends) - value).abs(),
             },
             of_measure: ends[0].error.max(ends[1].error) / slope.abs(),
-            is_jump: is_jump(samples, left, value),
+            is_jump,
+            alone,
             ends,
         }
     });
     found.collect()
 }
 
-/// Whether lines through the two samples on either side of a root lead to less than half of the way to zero there.
-fn is_jump(samples: &[Excess], left: usize, root: f64) -> bool {
-    let stays = |near: &Excess, far: &Excess| {
+/// Whether the measure may jump over zero between a sample and the next: where lines through the two samples on
+/// either side of a root lead to less than half of the way to zero there, or a solved value between them has no
+/// measure. A side with one sample says nothing; that sample is told then.
+fn jump(samples: &[Excess], left: usize, root: f64) -> (bool, Option<f64>) {
+    let stays = |near: &Excess, far: Option<&Excess>| {
+        let Some(far) = far else {
+            return true;
+        };
         let slope = (near.over - far.over) / (near.at - far.at);
         let there = near.over + slope * (root - near.at);
         let is_known = near.over.abs() > near.error;
         is_known && there / near.over > 0.5
     };
-    let sides = (left.checked_sub(1), samples.get(left + 2));
-    let (Some(before), Some(after)) = sides else {
-        return false;
-    };
-    stays(&samples[left], &samples[before]) && stays(&samples[left + 1], after)
+    let sides = [
+        (&samples[left], left.checked_sub(1).map(|at| &samples[at])),
+        (&samples[left + 1], samples.get(left + 2)),
+    ];
+    let is_torn = !samples[left + 1].follows;
+    let is_jump = is_torn || sides.iter().all(|&(near, far)| stays(near, far));
+    let alone = sides.iter().find(|(_, far)| far.is_none());
+    let alone = alone
+        .filter(|_| is_jump && !is_torn)
+        .map(|(near, _)| near.at);
+    (is_jump, alone)
 }
 
 /// The root between two samples of the polynomial through some.
@@ -298,7 +325,12 @@ fn through(nodes: &[Excess], at: f64) -> f64 {
 }
 
 fn row((asked, is_sampled): (&MeasureLevel, bool), root: &Root, tolerance: f64) -> LevelCrossing {
-    let error = root.error();
+    let [lower, upper] = root.ends.map(|end| end.at);
+    // Of a jump nothing is known but what it lies between.
+    let (value, error) = match root.is_jump {
+        true => (0.5 * (lower + upper), 0.5 * (upper - lower)),
+        false => (root.value, root.error()),
+    };
     let is_judged = root.ends.iter().all(|end| end.is_judged);
     let is_known = error <= tolerance;
     let doubt = match (is_known, is_judged) {
@@ -311,10 +343,10 @@ fn row((asked, is_sampled): (&MeasureLevel, bool), root: &Root, tolerance: f64) 
     LevelCrossing {
         label: String::new(),
         asked: asked.clone(),
-        value: root.value,
+        value,
         error,
-        lower: root.ends[0].at,
-        upper: root.ends[1].at,
+        lower,
+        upper,
         rises: root.ends[0].over < 0.0,
         doubts: doubt.into_iter().collect(),
     }
@@ -339,6 +371,7 @@ mod tests {
             over: measure(at),
             error: 1e-9,
             is_judged: true,
+            follows: true,
         };
         let samples: Vec<Excess> = at.iter().map(sample).collect();
         let mut found = roots(&samples);
@@ -360,5 +393,16 @@ mod tests {
             level: 0.0,
         };
         assert_eq!(row((&level, false), &jump, 0.1).doubts, [Doubt::Jump]);
+        // A jump beside the first value, which happens to be near the level: one sample is asked for, and then tells.
+        let few = [0.49, 0.51, 0.7, 1.0];
+        let other = |at: f64| if at < 0.5 { 1e-5 } else { -1.0 - at };
+        let one_sided = root_of(other, &few);
+        assert!(one_sided.is_jump && one_sided.alone == Some(0.49));
+        let more = [0.49, 0.5 * (0.49 + one_sided.value), 0.51, 0.7, 1.0];
+        let jump = root_of(other, &more);
+        assert!(jump.is_jump && jump.alone.is_none());
+        // What goes to zero from one side needs no second sample on the other.
+        let smooth = root_of(|at| (at - 0.495) * (2.0 + at), &few);
+        assert!(!smooth.is_jump && smooth.alone.is_none());
     }
 }

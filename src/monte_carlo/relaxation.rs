@@ -6,11 +6,11 @@ use rayon::prelude::*;
 use super::autocorrelation::{Correlation, correlation};
 use super::batch::{Batch, Limits, Purpose, key, random_point};
 use crate::cancellation::{Cancellation, Cancelled};
-use crate::sampling::{Integrator, Stepper, pilot};
+use crate::sampling::{Integrator, Stepper, pilot, stand_still};
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes, System};
 
-/// Batches of trajectories; half start at the middle of Ω, half all over it.
+/// Batches of trajectories; half start at the middle of Ω unless they stay there, half all over it.
 const BATCHES: u64 = 4;
 /// Means recorded of each trajectory in a window.
 const RECORDS: usize = 512;
@@ -100,22 +100,30 @@ pub fn relaxation(
     let step = pilot.automatic_time_step(Integrator::StochasticHeun);
     let stepper = Stepper::new(system, Integrator::StochasticHeun, step, cancellation);
     let stepper = stepper.within_a_turn();
-    let forced = system.facts().phase.is_some();
+    let phase = system.facts().phase;
     let limits = Limits::new(space);
     let mut watched: Vec<Watched> = (0..BATCHES)
-        .map(|n| start((space, system.facts().phase), seed, n))
+        .map(|n| start((space, phase), seed, (n, 2 * n >= BATCHES)))
         .collect();
     let mut stride = LOOKS;
     let watch = |watched: &mut Vec<Watched>, stride: usize| {
         let each = watched.par_iter_mut();
         each.try_for_each(|one| one.window(&stepper, &limits, stride))
     };
+    let starts: Vec<Vec<Lanes>> = watched.iter().map(|one| one.batch.states.clone()).collect();
     watch(&mut watched, stride)?;
+    for (number, starts) in (0..BATCHES).zip(starts) {
+        let one = &mut watched[number as usize];
+        if stand_still(&starts, &one.batch.states, space, phase) {
+            *one = start((space, phase), seed, (number, true));
+            one.window(&stepper, &limits, stride)?;
+        }
+    }
     loop {
         watch(&mut watched, stride)?;
         let found = judge(
             &watched,
-            (pilot.clone(), forced),
+            (pilot.clone(), phase.is_some()),
             step * (stride * LOOKS) as f64,
         );
         let steps = RECORDS * LOOKS * stride;
@@ -126,8 +134,13 @@ pub fn relaxation(
     }
 }
 
-/// Of a forced system all trajectories start at phase zero.
-fn start((space, phase): (&CellSpace, Option<usize>), seed: u64, number: u64) -> Watched {
+/// A batch of a number that starts at the middle of Ω, or all over it. Of a forced system all trajectories start at
+/// phase zero.
+fn start(
+    (space, phase): (&CellSpace, Option<usize>),
+    seed: u64,
+    (number, is_all_over): (u64, bool),
+) -> Watched {
     let dimension = space.dimension();
     let points: Vec<_> = (0..LANES as u64)
         .map(|lane| random_point(seed, number * LANES as u64 + lane, dimension))
@@ -137,7 +150,7 @@ fn start((space, phase): (&CellSpace, Option<usize>), seed: u64, number: u64) ->
         for (value, point) in lanes.iter_mut().zip(&points) {
             let share = if phase == Some(axis) {
                 0.0
-            } else if 2 * number >= BATCHES {
+            } else if is_all_over {
                 point[axis]
             } else {
                 0.5

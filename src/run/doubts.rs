@@ -15,7 +15,7 @@ pub fn doubt_in_words(family: &Family, doubt: &Doubt) -> String {
         Doubt::OutwardDrift => "from there on the drift at an end of Ω points outward, and what is seen beside that \
              end changes: a wider range is needed"
             .to_owned(),
-        Doubt::Jump => "the slope or curvature that tells of it jumps there in place of passing zero: a wider range or \
+        Doubt::Jump => "the number that tells of it jumps there in place of passing zero or its level: a wider range or \
              more cells may show why"
             .to_owned(),
         Doubt::Unsound(status, None) => status.word().to_owned(),

@@ -47,6 +47,7 @@ pub(crate) use integrator::{Stepper, WholeTurn};
 pub(crate) use lookup::CellLookup;
 pub use options::SamplingOptions;
 pub(crate) use phase::{frequency_of_forcing, part_of_period};
+pub(crate) use pilot::stand_still;
 pub use pilot::{Pilot, pilot};
 pub(crate) use random::{NormalStream, StreamKey, mix, unit};
 pub(crate) use settling::{hull, settled};

@@ -14,7 +14,7 @@ use crate::system::{LANES, Lanes, System};
 mod record;
 use record::Record;
 
-/// Batches of trajectories; the first two start at the centre of Ω, the others all over it.
+/// Batches of trajectories; the first two start at the centre of Ω unless they stay there, the others all over it.
 const BATCHES: u64 = 4;
 /// States recorded of each trajectory.
 const RECORDS: usize = 256;
@@ -24,6 +24,9 @@ const MOST_STEPS: usize = 100_000;
 const PILOT_CELL: u64 = u64::MAX;
 /// Points at which local rates are looked at before any trajectory runs.
 const SCOUTS: u64 = 256;
+
+/// Share of the range of an axis within which a trajectory that has been followed for long has not moved.
+const REST: f64 = 1e-6;
 
 /// Share of the damping that the integrator's own anti-damping may take.
 const DAMPING_SHARE: f64 = 0.01;
@@ -303,6 +306,22 @@ fn place(space: &CellSpace, seed: u64, point: u64, spread: bool) -> Vec<f64> {
     space.axes().iter().enumerate().map(coordinate).collect()
 }
 
+/// Whether there is an axis, other than the phase of a forcing, along which no trajectory of a batch has moved: they
+/// started at a state of rest, or on a plane that nothing leaves, and say nothing of a density that lies elsewhere.
+pub(crate) fn stand_still(
+    starts: &[Lanes],
+    states: &[Lanes],
+    space: &CellSpace,
+    phase: Option<usize>,
+) -> bool {
+    let mut axes = space.axes().iter().enumerate();
+    axes.any(|(axis, cells)| {
+        let far = REST * (cells.to() - cells.from());
+        let mut lanes = starts[axis].iter().zip(&states[axis]);
+        Some(axis) != phase && lanes.all(|(start, state)| (state - start).abs() <= far)
+    })
+}
+
 /// One batch: settles for `steps` steps and is recorded during as many again.
 fn trajectories(
     stepper: &Stepper<'_>,
@@ -312,20 +331,28 @@ fn trajectories(
     batch: u64,
     steps: usize,
 ) -> Result<Record, Cancelled> {
-    let mut states: Vec<Lanes> = vec![[0.0; LANES]; space.dimension()];
-    for lane in 0..LANES {
-        let point = SCOUTS + batch * LANES as u64 + lane as u64;
-        let start = place(space, seed, point, 2 * batch >= BATCHES);
-        for (lanes, value) in states.iter_mut().zip(start) {
-            lanes[lane] = value;
+    let settled = |spread: bool| {
+        let mut starts: Vec<Lanes> = vec![[0.0; LANES]; space.dimension()];
+        for lane in 0..LANES {
+            let point = SCOUTS + batch * LANES as u64 + lane as u64;
+            let start = place(space, seed, point, spread);
+            for (lanes, value) in starts.iter_mut().zip(start) {
+                lanes[lane] = value;
+            }
         }
+        let mut stream = NormalStream::new(StreamKey {
+            seed,
+            cell: PILOT_CELL,
+            block: batch,
+        });
+        let mut states = starts.clone();
+        stepper.advance(&mut states, 0, steps, &mut stream)?;
+        Ok::<_, Cancelled>((starts, states, stream))
+    };
+    let (starts, mut states, mut stream) = settled(2 * batch >= BATCHES)?;
+    if stand_still(&starts, &states, space, system.facts().phase) {
+        (_, states, stream) = settled(true)?;
     }
-    let mut stream = NormalStream::new(StreamKey {
-        seed,
-        cell: PILOT_CELL,
-        block: batch,
-    });
-    stepper.advance(&mut states, 0, steps, &mut stream)?;
     let mut record = Record::new(system, space);
     let mut done = steps;
     for visit in 1..=RECORDS {

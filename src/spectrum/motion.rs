@@ -12,22 +12,62 @@ use crate::system::System;
 /// What the ends do is an estimate: it is taken so many times.
 const SAFETY: f64 = 2.0;
 
+/// Densities below this share of the largest are rounding.
+const NOTHING: f64 = 1e-16;
+
 /// Masses below this are rounding.
 const NO_MASS: f64 = 1e-12;
 
-/// What the ends of the range do to an eigenvalue of a size, at most; `product` is |l r| at a cell. A wall at the
-/// distance b from the mean changes it by D l'(b) r(b). With l a polynomial and the density a Gaussian one of deviation
-/// σ that is, over the eigenvalue, the product l r at the end times σ²/b.
+/// A product whose logarithm falls by less than this share of that of the density does not fall because states are
+/// held: left vectors grow like p^(-1/2) in a spectrum that is continuous without the ends of the range.
+const GROWING: f64 = 0.25;
+
+/// Such eigenvalues change with the distance b of the ends like 1/b², which is as if the product fell over this share
+/// of b.
+const CONTINUOUS: f64 = 0.375;
+
+/// What the ends of the range do to an eigenvalue of a size, at most; `product` is |l r| at a cell, of vectors whose
+/// product sums to one. With w(b) the product's density at a wall at the distance b from the mean, the wall changes the
+/// eigenvalue λ by λ w(b) for each unit of length by which it is moved (J. Hadamard, 1908), so that a wall in place of
+/// none does it by λ w(b) ℓ, where w falls over the length ℓ. Of a density like a Gaussian one it falls like exp(-x²)
+/// from its largest value on, so that ℓ = b/(2 ln(w_max/w(b))); of dry friction's, whose modes are spread evenly, it
+/// does not.
 pub(super) fn of_ends(
     grid: &Grid,
     size: f64,
     product: impl Fn(usize) -> f64,
     motion: &Motion,
 ) -> f64 {
-    let (places, weights) = motion.at_ends(&grid.space);
-    let sizes = places.into_iter().zip(weights);
-    let share: f64 = sizes.map(|(cell, weight)| weight * product(cell)).sum();
-    share / motion.rate * size
+    let mut share = 0.0;
+    for (index, (axis, reaches)) in grid.space.axes().iter().zip(&motion.reaches).enumerate() {
+        if *reaches == [0.0; 2] {
+            continue;
+        }
+        let mut densities = vec![0.0; axis.count()];
+        for cell in 0..grid.space.n_cells() {
+            densities[grid.space.position(cell, index)] += product(cell);
+        }
+        for (position, density) in densities.iter_mut().enumerate() {
+            *density /= axis.width(position);
+        }
+        let ends = [0, 1].map(|end| (fall(&densities, end), motion.falls[index][end]));
+        for (((density, falls), of_density), reach) in ends.into_iter().zip(reaches) {
+            let length = match falls > GROWING * of_density {
+                true => reach * (0.5 / falls).min(CONTINUOUS),
+                false => reach * CONTINUOUS,
+            };
+            share += SAFETY * density * length;
+        }
+    }
+    share * size
+}
+
+/// The value at an end of a row, and by how much the logarithm falls from the largest of all to there.
+fn fall(row: &[f64], end: usize) -> (f64, f64) {
+    let largest = row.iter().copied().fold(0.0, f64::max);
+    let value = row[end * (row.len() - 1)];
+    let falls = (largest / value.max(NOTHING * largest)).ln();
+    (value, if falls.is_finite() { falls } else { 0.0 })
 }
 
 /// How fast and how far states move in a steady state.
@@ -38,6 +78,11 @@ pub(super) struct Motion {
     /// Per axis and end that is no wall of the system, the square of the standard deviation over the distance from the
     /// mean to the end; zero at walls, and along series.
     ends: Vec<[f64; 2]>,
+    /// Per axis and end that is no wall of the system, the distance from the mean to the end; zero at walls, and along
+    /// series.
+    reaches: Vec<[f64; 2]>,
+    /// Per axis and end, by how much the logarithm of the density along the axis falls from its largest value.
+    falls: Vec<[f64; 2]>,
     /// Shares of the cells in the steady state.
     shares: Vec<f64>,
 }
@@ -75,19 +120,38 @@ impl Motion {
         };
         let rates = (0..axes.len()).filter_map(of_axis);
         let rate = rates.filter(|rate| rate.is_finite()).reduce(f64::max)?;
-        let end = |axis: usize, end: usize| {
+        let reach = |axis: usize, end: usize| {
             let is_wall = steady.closed.get(axis).is_none_or(|closed| closed[end]);
             let at = [axes[axis].from(), axes[axis].to()][end];
             if is_wall || axes[axis].is_modes() {
                 0.0
             } else {
-                variance(axis) / (at - means[axis]).powi(2)
+                (at - means[axis]).abs()
             }
         };
-        let ends = (0..axes.len()).map(|axis| [0, 1].map(|one| end(axis, one)));
+        let reaches = (0..axes.len()).map(|axis| [0, 1].map(|end| reach(axis, end)));
+        let reaches: Vec<[f64; 2]> = reaches.collect();
+        let ratio = |axis: usize, reach: f64| match reach > 0.0 {
+            true => variance(axis) / reach.powi(2),
+            false => 0.0,
+        };
+        let ends = reaches.iter().enumerate();
+        let ends = ends.map(|(axis, reaches)| reaches.map(|reach| ratio(axis, reach)));
+        let ends: Vec<[f64; 2]> = ends.collect();
+        let falls = axes.iter().enumerate().map(|(index, axis)| {
+            let mut row = vec![0.0; axis.count()];
+            for (cell, mass) in steady.masses.iter().enumerate() {
+                let position = grid.space.position(cell, index);
+                row[position] += mass.abs() / axis.width(position);
+            }
+            [0, 1].map(|end| fall(&row, end).1)
+        });
+        let falls: Vec<[f64; 2]> = falls.collect();
         (rate > 0.0).then(|| Self {
             rate,
-            ends: ends.collect(),
+            ends,
+            reaches,
+            falls,
             shares: steady.masses.iter().map(|mass| mass / whole).collect(),
         })
     }

@@ -147,7 +147,14 @@ fn check_table<'n>(
                     &entry.node.place,
                     format!("this is {}", entry.node.value.kind()),
                 )
-                .allowed(format!("a table with the keys {}", below(path).join(", ")));
+                .allowed(format!("a table with the keys {}", below(path).join(", ")))
+                .remedy(format!(
+                    "write [{}] on a line of its own, and below it a line `{} = ...` for each",
+                    path.join("."),
+                    below(path)
+                        .first()
+                        .map_or("<key>", |name| name.trim_matches('`'))
+                ));
             found.push(diagnostic);
         }
         path.pop();

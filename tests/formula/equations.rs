@@ -105,6 +105,23 @@ fn trajectories_that_cannot_start_are_told_apart_from_those_that_run_away() {
 }
 
 #[test]
+fn a_coordinate_that_may_be_an_angle_is_told_where_no_range_holds_it() {
+    let rotor = GOOD
+        .replace(
+            "y = \"-(c0 + c1 x^2) y - x - friction\"",
+            "y = \"-0.3 y - sin(x) + c0 + 0.5\"",
+        )
+        .replace("[\"sqrt(2 D)\", \"0.1 x\"]", "\"sqrt(2 D)\"")
+        .replace("from = -4, to = 4, ", "range = \"auto\", ");
+    let told = refused(
+        &rotor,
+        "",
+        &["repeats itself with x + 2 pi", "`x = \"periodic\"`"],
+    );
+    assert!(!told.contains("inside ends"), "{told}");
+}
+
+#[test]
 fn all_mistakes_are_reported_at_once() {
     let text = GOOD
         .replace("f_c sign(y)", "f_c sgin(y)")

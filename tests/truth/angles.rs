@@ -1,7 +1,7 @@
 //! Angles through sweep files: changes of a density on a circle at exact values, wherever the seam is.
 
-use crate::common::sweeps::{rows, swept};
-use pbif::continuation::BifurcationStatus;
+use crate::common::sweeps::{rows, solved, swept};
+use pbif::continuation::{BifurcationStatus, Finding};
 
 /// θ' = -sin u - b sin 2u, u = θ - s, with white noise of intensity 2 D: p ∝ exp((cos u + (b/2) cos 2u)/D).
 fn circle(shift: f64, d: f64) -> String {
@@ -74,4 +74,48 @@ fn a_pair_is_born_at_the_fold_of_the_potential_wherever_the_seam_is() {
         values.push(row.value);
     }
     println!("{b} {values:?}");
+}
+
+/// The theta neuron, θ' = 1 - cos θ + (1 + cos θ) (I + σ ξ) in Stratonovich's reading: x = tan(θ/2) obeys
+/// x' = x² + I + σ ξ, so that p(x) ∝ ∫₀^∞ exp(-(2/σ²)(u³/3 + x u² + (x² + I) u)) du. Noise dies at θ = π.
+#[test]
+fn a_theta_neuron_has_its_exact_density_and_no_doubt_in_its_harmonics() {
+    let text = "[system.equations]\ntheta = \"1 - cos(theta) + (1 + cos(theta)) I\"\n\
+         [system.noise]\ntheta = \"s (1 + cos(theta))\"\ninterpretation = \"stratonovich\"\n\
+         [system.parameters]\nI = 0.1\ns = 0.5\n[system.bounds]\ntheta = \"periodic\"\n\
+         [sweep]\nparameter = \"I\"\nfrom = -0.5\nto = 0.5\npoints = 3\n";
+    for current in [-0.5, 0.0, 0.5] {
+        let exact = |theta: f64| {
+            let x = (0.5 * theta).tan();
+            let scale = 1.0 + x * x;
+            let integrand = |s: f64| {
+                let u = s / scale;
+                (-8.0 * u * (u * u / 3.0 + x * u + x * x + current)).exp()
+            };
+            let (step, half_steps) = (0.005, 2000);
+            let terms = (0..half_steps).map(|term| {
+                let s = 2.0 * step * f64::from(term);
+                integrand(s) + 4.0 * integrand(s + step) + integrand(s + 2.0 * step)
+            });
+            terms.sum::<f64>()
+        };
+        let (_, solution) = solved(text, "", Some(current));
+        let doubtful = solution.report.findings.iter();
+        let few = doubtful.filter(|one| matches!(one, Finding::FewModes { .. }));
+        assert_eq!(few.count(), 0, "{current}");
+        let density = &solution.densities[0].density;
+        let cells = density.axes[0].edges().windows(2);
+        let masses = cells.map(|ends| {
+            let values = [ends[0], 0.5 * (ends[0] + ends[1]), ends[1]].map(exact);
+            (ends[1] - ends[0]) * (values[0] + 4.0 * values[1] + values[2]) / 6.0
+        });
+        let masses: Vec<f64> = masses.collect();
+        let total: f64 = masses.iter().sum();
+        let pairs = density.masses().into_iter().zip(&masses);
+        let apart = 0.5
+            * pairs
+                .map(|(own, exact)| (own - exact / total).abs())
+                .sum::<f64>();
+        assert!(apart < 1e-6, "{current}: {apart:e}");
+    }
 }

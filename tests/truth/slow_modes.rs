@@ -561,3 +561,25 @@ fn an_underdamped_well_is_left_as_often_as_paths_leave_it() {
     // Two per cent of sampling, and four of what the regions are between which a path is counted.
     assert!((there.0 - counted).abs() < (3.0 * 0.02 + 0.04) * counted);
 }
+
+/// v' = -Δ sgn v + √(2D) ξ: beyond the gap Δ²/4D modes have all rates, and those of a range are its ends' doing (H.
+/// Touchette, E. Van der Straeten and W. Just, Journal of Physics A 43, 2010).
+#[test]
+fn the_gap_of_dry_friction_lies_within_the_error_that_the_ends_make() {
+    let model = model(&[("v", "-sign(v)")], &[("v", "0.8")]);
+    for (half, cells) in [(8.0, 100), (15.0, 160)] {
+        let found = modes(&model, &[(-half, half, cells)], 1);
+        let [first] = found.modes[..] else {
+            panic!("{half}: the slowest mode is known");
+        };
+        let off = first.decay.0 - 0.78125;
+        // A wider range knows more: the ends change the rate by about D (π/b)².
+        let ends = 0.32 * (std::f64::consts::PI / half).powi(2);
+        assert!(
+            off.abs() <= first.decay.1,
+            "{half}: {off:e} of {:e}",
+            first.decay.1
+        );
+        assert!(first.decay.1 < 3.0 * ends, "{half}: {:e}", first.decay.1);
+    }
+}

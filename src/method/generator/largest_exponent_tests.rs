@@ -285,3 +285,20 @@ fn modes_and_trajectories_agree_within_their_errors() {
 fn modes_and_trajectories_agree_on_more_random_oscillators_at_length() {
     assert_agreement(20..24, 48, 2e7);
 }
+
+/// The middle of the range is a state of rest that nothing leaves, and whose own exponent is above zero (L. Arnold,
+/// Random Dynamical Systems, chapter 9: noise on the stiffness alone): paths from there would tell that one.
+#[test]
+fn paths_do_not_start_where_nothing_moves() {
+    let noises = [("y", "0.5 x")];
+    let typed: Typed<'_> = (["y", "-x + 0.3 y - x^3 - x^2 y"], &noises);
+    let ends = [2.5, 3.5];
+    let followed = by_trajectories(typed, ends, 3e6);
+    let found = by_angles(typed, 0.0, ends, 32).unwrap();
+    assert!(followed.value + followed.error < 0.0, "{followed:?}");
+    let off = (found.value - followed.value).abs();
+    assert!(
+        off <= found.error + followed.error,
+        "{found:?} by modes, {followed:?} by trajectories"
+    );
+}

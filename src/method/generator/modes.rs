@@ -133,8 +133,9 @@ pub(crate) fn automatic_modes(
         found.count = count;
         before = Some(now);
     }
-    // A state whose law has a bend converges slowly in the number of modes.
-    found.is_enough = wanted == CHANGE && found.change <= FLOOR;
+    // A state whose law has a bend converges slowly in the number of modes, and so do harmonics where noise dies.
+    let enough = if wanted == CHANGE { FLOOR } else { CHANGE };
+    found.is_enough = found.change <= enough;
     Ok(found)
 }
 
