@@ -265,6 +265,8 @@ pub enum PassageFault {
     NoPeak,
     /// The two regions of transitions have cells in common.
     Overlap,
+    /// Cells and rounding leave an error as large as the mean time itself.
+    Rounding,
 }
 
 /// A class of cells with a steady state of its own, beside others.

@@ -245,6 +245,34 @@ fn judge(
     }
 }
 
+/// Σ (x_i - m_i(t))²/s_i² of every trajectory, with the means m(t) of all of them at each record and the variances about
+/// these. An axis along which all are alike, as the phase, has no part.
+fn about_moving_mean(watched: &[Watched], dimension: usize) -> Vec<Vec<f64>> {
+    let mut sums: Vec<Vec<f64>> = Vec::new();
+    for axis in 0..dimension {
+        let mut values = series(watched, &|one, record, lane| {
+            one.means[2 * axis][record][lane]
+        });
+        let count = values.len() as f64;
+        let (mut variance, mut largest) = (0.0, 0.0_f64);
+        for record in 0..RECORDS {
+            let mean = values.iter().map(|one| one[record]).sum::<f64>() / count;
+            largest = largest.max(mean.abs());
+            for one in &mut values {
+                one[record] = (one[record] - mean).powi(2);
+                variance += one[record] / (count * RECORDS as f64);
+            }
+        }
+        sums.resize(values.len(), vec![0.0; RECORDS]);
+        if variance.sqrt() > ROUNDING * largest {
+            for (sum, value) in sums.iter_mut().flatten().zip(values.iter().flatten()) {
+                *sum += value / variance;
+            }
+        }
+    }
+    sums
+}
+
 /// What the records of a window say of the axes, their squares and the energy.
 struct Correlations {
     mean: Vec<f64>,
@@ -318,7 +346,10 @@ fn correlations(watched: &[Watched], dimension: usize, forced: bool, spacing: f6
         if relative.is_finite() { relative } else { 0.0 }
     };
     let averaged = || squares.iter().chain([&energy]);
-    let times = first.iter().chain(averaged()).map(|found| found.time);
+    // The product of a deviation and the moving mean beats, and what beats looks forgotten long before it is.
+    let about_mean = forced.then(|| correlation(about_moving_mean(watched, dimension)));
+    let times = first.iter().chain(averaged()).chain(&about_mean);
+    let times = times.map(|found| found.time);
     Correlations {
         averaging_time: averaged().map(ratio).collect(),
         longest: times.fold(0.5, f64::max),

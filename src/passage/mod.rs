@@ -178,6 +178,9 @@ pub enum PassageError {
     /// The process never enters the target.
     #[error("the region that is waited for is never entered from the start")]
     Never,
+    /// Cells and rounding leave an error as large as the time itself.
+    #[error("the mean time is not known to its own size")]
+    Rounding,
     /// Transitions are between two regions that have cells in common.
     #[error("the two regions of the transitions have states in common")]
     Overlap,

@@ -5,7 +5,7 @@
 //! (s - Q)⁻ʲ p₀ is tested with that of the rows 1ᵀ (s - Q)⁻ʲ, so that at each s twice as many derivatives agree as
 //! either has vectors (rational Krylov spaces from both sides; A. Ruhe 1984, E. J. Grimme 1997).
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Schur};
 use sprs::CsMat;
 
 use super::{PassageError, dot};
@@ -28,6 +28,9 @@ const NOTHING: f64 = 1e-9;
 
 /// Largest growth rate of a model, over its fastest decay, that is rounding.
 const GROWTH: f64 = 1e-9;
+
+/// Most sweeps in which the eigenvalues of a model are looked for.
+const MOST_SWEEPS: usize = 10_000;
 
 /// Real numbers at which the transform is matched, for times from one to another.
 fn shifts((first, last): (f64, f64)) -> Vec<f64> {
@@ -213,7 +216,10 @@ impl ReducedModel {
 
     /// Whether nothing grows.
     fn is_stable(&self) -> bool {
-        let eigenvalues = self.rates.complex_eigenvalues();
+        let Some(schur) = Schur::try_new(self.rates.clone(), f64::EPSILON, MOST_SWEEPS) else {
+            return false;
+        };
+        let eigenvalues = schur.complex_eigenvalues();
         let fastest = eigenvalues
             .iter()
             .fold(0.0f64, |most, one| most.max(one.norm()));

@@ -127,6 +127,9 @@ pub(crate) fn timed_from(
     let mut all = all.map(|((value, error), (full, half))| (value, error + full.max(half)));
     let mut next = || all.next().unwrap_or((f64::NAN, f64::NAN));
     let [mean, deviation, rate] = [next(), next(), next()];
+    if !(mean.0 > mean.1 && deviation.0 > 0.0 && rate.0 > 0.0) {
+        return Err(PassageError::Rounding);
+    }
     let shares = all.by_ref().take(passage.exits.len()).collect();
     let survival = all.by_ref().take(passage.times.len()).collect();
     Ok(Timed {

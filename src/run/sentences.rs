@@ -303,6 +303,9 @@ fn passage_in_words(family: &Family, passage: usize, fault: PassageFault) -> Str
             "its start is spread as the steady state is, and there is none: give a state as its `start`"
         }
         PassageFault::Never => "the region that is waited for is never entered from its start",
+        PassageFault::Rounding => {
+            "its mean time is not known to its own size: finer cells know more, unless it is so long beside the times in which states move that rounding decides (from about 1e13 times on)"
+        }
         PassageFault::Unsolved => {
             "its equations were not solved: use more cells, or give it more memory (`method.memory_limit`)"
         }

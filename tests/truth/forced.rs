@@ -1,7 +1,7 @@
 //! Systems under a periodic force: what is called located against exact answers.
 
 use crate::common::numbers::{Numbers, given};
-use crate::common::sweeps::{rows, swept};
+use crate::common::sweeps::{measure, rows, solved, swept};
 use pbif::continuation::BifurcationStatus;
 use pbif::density::Density;
 
@@ -144,4 +144,24 @@ fn assert_splits(cases: std::ops::Range<usize>) {
             }
         }
     }
+}
+
+#[test]
+fn paths_under_a_force_forget_their_start_before_they_are_counted() {
+    // x'' + g x' + x = F cos w t: the amplitude of the mean is F/√((1 - w²)² + g² w²), and deviations forget slowly.
+    let (g, w, force): (f64, f64, f64) = (0.04, 1.05, 0.25);
+    let text = format!(
+        "[system.equations]\nx = \"y\"\ny = \"-g y - x + F cos(w t)\"\n[system.noise]\ny = \"sqrt(0.2 g)\"\n\
+         [system.parameters]\ng = {g}\nw = {w}\nF = {force}\n[sweep]\nparameter = \"F\"\nfrom = 0.2\nto = {force}\n\
+         points = 2\n[method]\nkind = \"monte-carlo\"\nerror = 0.01\n[detect]\nmarginals = [\"x @ mean\"]\njoint = []\n"
+    );
+    let (_, solution) = solved(&text, "figures.draw=[]", None);
+    let (found, error) = measure(&solution, "amplitude_x");
+    let exact = force / ((1.0 - w * w).powi(2) + (g * w).powi(2)).sqrt();
+    let off = (found - exact).abs();
+    println!("{found} {error} {exact}");
+    assert!(
+        off < 3.5 * error && error < 0.01 * exact,
+        "{found} ± {error}, exact {exact}"
+    );
 }

@@ -15,6 +15,7 @@ mod hard_cases;
 mod internal_states;
 mod located;
 mod location;
+mod long_passages;
 mod moving_jump;
 mod natural_ends;
 mod passage_fields;

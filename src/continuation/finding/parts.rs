@@ -122,12 +122,13 @@ stored! {
 
 impl PassageFault {
     /// All of them, with their codes.
-    pub(super) const CODES: [(Self, &'static str); 11] = [
+    pub(super) const CODES: [(Self, &'static str); 12] = [
         (Self::Nowhere, "passage-nowhere"),
         (Self::Everywhere, "passage-everywhere"),
         (Self::Start, "passage-start"),
         (Self::NoDensity, "passage-no-density"),
         (Self::Never, "passage-never"),
+        (Self::Rounding, "passage-rounding"),
         (Self::Unsolved, "passage-unsolved"),
         (Self::Rare, "passage-rare"),
         (Self::RunsAway, "passage-runs-away"),

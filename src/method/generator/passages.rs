@@ -245,6 +245,7 @@ fn fault(error: &PassageError) -> PassageFault {
         PassageError::Start => PassageFault::Start,
         PassageError::NoDensity => PassageFault::NoDensity,
         PassageError::Never => PassageFault::Never,
+        PassageError::Rounding => PassageFault::Rounding,
         PassageError::Overlap => PassageFault::Overlap,
         PassageError::Generator(_) | PassageError::Space(_) | PassageError::Rate(_) => {
             PassageFault::Unsolved

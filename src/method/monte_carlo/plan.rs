@@ -17,6 +17,9 @@ const TRAJECTORIES: f64 = 2048.0;
 /// Burn-in in autocorrelation times: e⁻¹² = 6e-6 of the start is left.
 const BURN_IN: f64 = 12.0;
 
+/// The same under a forcing: there means oscillate, which forget at half of the rate at which variances do.
+const BURN_IN_OF_MEANS: f64 = 24.0;
+
 /// Shortest time, in burn-ins, over which it is watched how angles turn: eight windows.
 const TURNING: f64 = 4.0;
 
@@ -86,7 +89,8 @@ impl MonteCarloPlan {
             stride = 2 * (0.5 * longest / time_step).ceil() as usize;
             spacing = longest;
         }
-        let burn_in = options.burn_in.or(|| BURN_IN * relaxation_time);
+        let relaxations = if is_forced { BURN_IN_OF_MEANS } else { BURN_IN };
+        let burn_in = options.burn_in.or(|| relaxations * relaxation_time);
         let mut amount = match options.estimator {
             Estimator::Ergodic => ergodic(options, relaxed, (spacing, is_forced)),
             Estimator::Ensemble => ensemble(options, relaxed),
