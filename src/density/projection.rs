@@ -97,7 +97,12 @@ impl Projection {
         phase: f64,
         is_coarse: bool,
     ) -> Self {
-        self.factors = Some(Arc::new(phase_factors(space, axis, phase, is_coarse)));
+        self.factors = Some(Arc::new(phase_factors(
+            space,
+            axis,
+            phase,
+            usize::from(is_coarse),
+        )));
         self
     }
 
@@ -214,16 +219,17 @@ impl Projection {
 }
 
 /// What masses of all cells are multiplied by, so that their sums along an axis that closes on itself are the density
-/// at a place on it. A cell of such an axis stands for the place at its beginning, where states were looked at.
+/// at a place on it, with so many of the last harmonics left out. A cell of such an axis stands for the place at its
+/// beginning, where states were looked at.
 pub(crate) fn phase_factors(
     space: &CellSpace,
     axis: usize,
     phase: f64,
-    is_coarse: bool,
+    left_out: usize,
 ) -> Vec<f64> {
     let along = &space.axes()[axis];
     let weights = if along.is_modes() {
-        let harmonics = along.mode_number() - usize::from(is_coarse);
+        let harmonics = along.mode_number().saturating_sub(left_out);
         along.weights_at(phase, harmonics)
     } else {
         let count = along.count();

@@ -261,7 +261,7 @@ impl Maps {
         let space = problem.space();
         let axes = observable.axes();
         if let Some((kept, phase, along)) = problem.at_phase(observable) {
-            let there = times(masses, &phase_factors(space, along, phase, false));
+            let there = times(masses, &phase_factors(space, along, phase, 0));
             return Structure {
                 is_spread: true,
                 ..structure(system, space, &there, kept, kinked, Moment::Phase)

@@ -245,8 +245,8 @@ fn judge(
     }
 }
 
-/// Σ (x_i - m_i(t))²/s_i² of every trajectory, with the means m(t) of all of them at each record and the variances about
-/// these. An axis along which all are alike, as the phase, has no part.
+/// Σ (x_i - m_i(t))²/s_i² of every trajectory, with the means m(t) of all of them at each record and the variances
+/// about these. An axis along which all are alike, as the phase, has no part.
 fn about_moving_mean(watched: &[Watched], dimension: usize) -> Vec<Vec<f64>> {
     let mut sums: Vec<Vec<f64>> = Vec::new();
     for axis in 0..dimension {

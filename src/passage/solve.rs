@@ -23,8 +23,8 @@ use crate::system::{Enclosed, System};
 /// of the dissipation does.
 const UNSETTLED: f64 = 0.02;
 
-/// Times this much shorter than the mean are no longer told apart, and products of the rate and a time from which on the
-/// probability that a process goes on is zero in double precision.
+/// Times this much shorter than the mean are no longer told apart, and products of the rate and a time from which on
+/// the probability that a process goes on is zero in double precision.
 const EARLY: f64 = 1e-6;
 const LATE: f64 = 750.0;
 

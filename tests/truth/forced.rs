@@ -159,9 +159,34 @@ fn paths_under_a_force_forget_their_start_before_they_are_counted() {
     let (found, error) = measure(&solution, "amplitude_x");
     let exact = force / ((1.0 - w * w).powi(2) + (g * w).powi(2)).sqrt();
     let off = (found - exact).abs();
-    println!("{found} {error} {exact}");
     assert!(
         off < 3.5 * error && error < 0.01 * exact,
         "{found} ± {error}, exact {exact}"
     );
+}
+
+/// Of a symmetric well one of two neighbouring harmonics moves means alone, and the other deviations.
+#[test]
+fn moments_at_phases_are_off_by_no_more_than_few_harmonics_say() {
+    let solve = |modes: usize| {
+        let text = format!(
+            "[system.equations]\nx = \"x - x^3 + 0.3 cos(0.1 t)\"\n[system.noise]\nx = \"sqrt(2 D)\"\n\
+             [system.parameters]\nD = 0.12\n[sweep]\nparameter = \"D\"\nfrom = 0.11\nto = 0.12\npoints = 2\n\
+             [detect]\nmarginals = [\"x @ phase 0\", \"x @ phase 1/8\", \"x @ phase 3/8\"]\n\
+             [cells]\nx = {{ from = -2.5, to = 2.5, count = 100 }}\nt = {{ modes = {modes} }}\n"
+        );
+        solved(&text, "figures.draw=[]", None).1
+    };
+    let many = solve(24);
+    for modes in [4, 5, 6, 8] {
+        let few = solve(modes);
+        for moment in ["mean", "sd"] {
+            for phase in ["0", "1_8", "3_8"] {
+                let name = format!("{moment}_x_phase_{phase}");
+                let [(value, error), (exact, _)] = [&few, &many].map(|one| measure(one, &name));
+                let off = (value - exact).abs();
+                assert!(off <= error, "{modes} {name}: {off:e} of {error:e}");
+            }
+        }
+    }
 }

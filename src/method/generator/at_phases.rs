@@ -22,7 +22,11 @@ pub(super) struct OverPeriod<'a> {
     pub(super) closed: &'a [[bool; 2]],
 }
 
-/// The moments in the order of the phases that are watched. Their errors are what the second scheme, the last harmonic
+/// Harmonics that are left out to see what more of them would change: where a force has a symmetry, one of two
+/// neighbours moves means alone, and the other deviations.
+const LAST: usize = 2;
+
+/// The moments in the order of the phases that are watched. Their errors are what the second scheme, the last harmonics
 /// and cells at walls change, and what lies beyond the ends at that phase.
 pub(super) fn moments_at_phases(
     family: &Family,
@@ -42,7 +46,7 @@ pub(super) fn moments_at_phases(
     for (at, _) in family.at_phases() {
         let axis = slice.axis(at.axis);
         let factors =
-            [false, true].map(|is_coarse| phase_factors(over.space, along, at.phase, is_coarse));
+            [0, LAST].map(|left_out| phase_factors(over.space, along, at.phase, left_out));
         let of = |weights: &[f64], second: Option<&[f64]>, factors: &[f64]| {
             let here = slice.of(&times(weights, factors));
             let second = second.map(|second| slice.of(&times(second, factors)));

@@ -96,7 +96,7 @@ pub(super) fn moments_at_phases(
         return Ok(Vec::new());
     };
     let at_phases = family.at_phases().map(|(at, _)| {
-        let factors = phase_factors(space, along, at.phase, false);
+        let factors = phase_factors(space, along, at.phase, 0);
         let of = |masses: &[f64]| -> Result<Moments, MethodError> {
             let here = times(masses, &factors);
             let whole: f64 = here.iter().sum();
