@@ -50,7 +50,7 @@ pub(super) fn run(arguments: &PlotArguments) -> Result<Outcome, CommandError> {
         return super::print(nothing_drawn(&stored));
     }
     if arguments.out.is_none() {
-        stored.run.renew_figures()?;
+        stored.run.renew_figures(&files)?;
     }
     super::conclude(&super::jobs::files(files), Outcome::Complete, output.path())
 }

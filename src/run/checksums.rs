@@ -34,16 +34,23 @@ pub(super) fn write(run: &Path, entries: &[&str]) -> Result<(), RunError> {
     write_sums(run, &sums)
 }
 
-/// Writes those below one entry anew, which was made anew.
+/// Writes those of some files of a folder anew, which were made anew; what else is in it keeps its checksum, or has
+/// none: it may be a user's own, or edited by hand. Files of the folder that are gone are no longer named.
 ///
 /// # Errors
 /// As [`write`]; nothing where the run has no checksums.
-pub(super) fn renew(run: &Path, entry: &str) -> Result<(), RunError> {
+pub(super) fn renew(run: &Path, folder: &str, made: &[PathBuf]) -> Result<(), RunError> {
     let Some(mut sums) = read(run)? else {
         return Ok(());
     };
-    sums.retain(|name, _| !is_below(name, entry));
-    add(run, entry, &mut sums)?;
+    sums.retain(|name, _| !is_below(name, folder) || run.join(name).exists());
+    for name in made.iter().filter_map(|path| path.file_name()) {
+        add(
+            run,
+            &format!("{folder}/{}", name.to_string_lossy()),
+            &mut sums,
+        )?;
+    }
     write_sums(run, &sums)
 }
 
@@ -273,10 +280,11 @@ mod tests {
             Some((1, vec![added]))
         );
         std::fs::write(run.join("figures/a b.svg"), "drawn again").unwrap();
-        renew(run, "figures").unwrap();
+        renew(run, "figures", &["elsewhere/a b.svg".into()]).unwrap();
         assert_eq!(
             check(run, ENTRIES, &["figures"]).unwrap(),
-            Some((2, Vec::new()))
+            Some((1, Vec::new()))
         );
+        assert!(!read(run).unwrap().unwrap().contains_key("figures/mine.svg"));
     }
 }

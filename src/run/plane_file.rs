@@ -227,13 +227,13 @@ impl StoredPlane {
         folder_in(self.path.parent().unwrap_or(&self.path), FIGURES)
     }
 
-    /// Notes in the checksums of the folder that its figures were drawn again.
+    /// Notes in the checksums of the folder that these figures were drawn again.
     ///
     /// # Errors
     /// [`RunError::Read`], [`RunError::Write`], [`RunError::Checksums`].
-    pub(crate) fn renew_figures(&self) -> Result<(), RunError> {
+    pub(crate) fn renew_figures(&self, drawn: &[PathBuf]) -> Result<(), RunError> {
         let folder = self.path.parent().unwrap_or(&self.path);
-        checksums::renew(folder, "figures")
+        checksums::renew(folder, FIGURES, drawn)
     }
 
     /// The resolved sweep file as TOML.

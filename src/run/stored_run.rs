@@ -294,12 +294,12 @@ impl StoredRun {
         folder_in(&self.path, FIGURES)
     }
 
-    /// Takes the figures that are there for those of the run: they were drawn again.
+    /// Takes these figures for those of the run: they were drawn again.
     ///
     /// # Errors
     /// [`RunError::Read`], [`RunError::Write`], [`RunError::Checksums`].
-    pub(crate) fn renew_figures(&self) -> Result<(), RunError> {
-        checksums::renew(&self.path, "figures")
+    pub(crate) fn renew_figures(&self, drawn: &[PathBuf]) -> Result<(), RunError> {
+        checksums::renew(&self.path, FIGURES, drawn)
     }
 }
 

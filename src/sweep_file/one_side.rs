@@ -4,11 +4,18 @@ use std::sync::Arc;
 
 use super::draft::MethodKind;
 use super::settings::{Grade, Settings};
+use super::verify::short;
 use crate::method::pilot_box;
 use crate::system::{System, natural_ends};
 
 /// Parts of the sweep at whose ends an axis is looked at.
 const PARTS: usize = 16;
+
+/// Parts of a range in which a zero of a noise is looked for, halvings by which it is found, and the number of values
+/// to one among which the one that was meant is looked for.
+const LOOKS: usize = 400;
+const HALVINGS: usize = 80;
+const ROUND: f64 = 1e9;
 
 impl Settings {
     /// Gives axes of which no end is known, and whose zero no path crosses downward anywhere along the sweep, the end 0
@@ -74,6 +81,38 @@ impl Settings {
         }
     }
 
+    /// Ends ranges from zero on at the first value above it that no path crosses upward anywhere along the sweep, and
+    /// says so: beyond it nothing comes to from below, as beyond a share of one.
+    pub(super) fn end_where_noise_dies(
+        &mut self,
+        kept: &[usize],
+        corners: &[Arc<dyn System>],
+        ranges: &mut [(f64, f64)],
+    ) {
+        let systems = self.with_systems_between(corners);
+        let open = kept
+            .iter()
+            .filter(|&&axis| self.axes[axis].ends[1].is_none());
+        let mut told = Vec::new();
+        for &axis in open {
+            let Some(end) = first_zero_of_noise(&systems, axis, ranges) else {
+                continue;
+            };
+            let mut ended = ranges.to_vec();
+            ended[axis].1 = end;
+            let mut all = systems.iter();
+            if all.all(|one| natural_ends(&**one, axis, &ended)[1]) {
+                ranges[axis].1 = end;
+                let (name, end) = (self.family.axis(axis), short(end));
+                told.push(format!(
+                    "cells: {name} to {end}, as no path crosses {name} = {end} upward, where its noise vanishes and its \
+                     drift does not lead out; give `cells.{name}.to` for another end"
+                ));
+            }
+        }
+        self.chosen.extend(told);
+    }
+
     /// These systems, and others along the sweep.
     fn with_systems_between(&self, corners: &[Arc<dyn System>]) -> Vec<Arc<dyn System>> {
         let (from, to) = self.family.ends();
@@ -81,6 +120,43 @@ impl Settings {
         let between = places.filter_map(|place| self.family.at(place).ok());
         corners.iter().cloned().chain(between).collect()
     }
+}
+
+/// The first value inside the range of an axis at which the amplitude of its noise changes its sign, with the other
+/// axes in the middle of theirs; of one noise that is the same function of the axis but for a factor, it is the same
+/// for all systems.
+fn first_zero_of_noise(
+    systems: &[Arc<dyn System>],
+    axis: usize,
+    ranges: &[(f64, f64)],
+) -> Option<f64> {
+    let system = systems.first()?;
+    let mut state: Vec<f64> = ranges.iter().map(|(from, to)| 0.5 * (from + to)).collect();
+    let mut noises = system.noises_on(axis);
+    let (Some(noise), None) = (noises.next(), noises.next()) else {
+        return None;
+    };
+    let mut amplitude = |place: f64| {
+        state[axis] = place;
+        noise.at(0.0, &state)
+    };
+    let (from, to) = ranges[axis];
+    let at = |part: usize| from + (to - from) * part as f64 / LOOKS as f64;
+    let part = (1..LOOKS).find(|&part| amplitude(at(part)) * amplitude(at(part + 1)) <= 0.0)?;
+    let (mut low, mut high) = (at(part), at(part + 1));
+    let sign = amplitude(low).signum();
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        match amplitude(middle) * sign > 0.0 {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    // The amplitude of what is typed is zero at the number itself, not beside it.
+    let rounded = (high * ROUND).round() / ROUND;
+    (amplitude(rounded) == 0.0)
+        .then_some(rounded)
+        .or((amplitude(high) == 0.0).then_some(high))
 }
 
 /// Those of some axes that stay positive in all the systems while all of them do, on these ranges of the others.

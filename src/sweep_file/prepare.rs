@@ -139,6 +139,7 @@ impl Settings {
             ranges = self.find_ranges(&ends, cancellation)?;
         }
         self.tell_of_one_side(&kept);
+        self.end_where_noise_dies(&kept, &ends, &mut ranges);
         for (axis, range) in self.axes.iter_mut().zip(ranges) {
             axis.ends = [range.0, range.1].map(Some);
         }

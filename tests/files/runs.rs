@@ -87,6 +87,24 @@ fn earlier_and_unfinished_runs_are_removed_when_asked_and_nothing_else() {
 }
 
 #[test]
+fn figures_of_a_user_stay_theirs_when_others_are_drawn_again() {
+    let room = Room::new();
+    sweep(&room, "--out a");
+    std::fs::create_dir_all(room.path("a/figures/paper")).unwrap();
+    room.write("a/figures/paper/fig1.tex", "mine");
+    room.write("a/figures/diagram_x.svg", "edited by hand");
+    room.done("plot a --only marginals --format svg");
+    let told = room.run("verify a");
+    assert!(format!("{}{}", told.out, told.err).contains("diagram_x.svg"));
+    sweep(&room, "--out a title=second");
+    room.done("clean a --yes")
+        .says(&["diagram_x.svg", "fig1.tex"]);
+    let left = room.read("a/previous/1/figures/diagram_x.svg");
+    assert_eq!(left, "edited by hand");
+    assert_eq!(room.read("a/previous/1/figures/paper/fig1.tex"), "mine");
+}
+
+#[test]
 fn runs_are_exported_and_nothing_is_overwritten() {
     let room = Room::new();
     sweep(&room, "--out runs/a");

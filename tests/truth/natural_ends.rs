@@ -1,11 +1,14 @@
 //! Ends at which noise dies, on more than one axis: populations that cannot be negative, whose marginals are known.
 
 use pbif::cancellation::Cancellation;
-use pbif::continuation::{DensitySource, Finding, Measure, PointStatus, Solution};
+use pbif::continuation::{
+    BifurcationStatus, DensitySource, Finding, Measure, PointStatus, Solution,
+};
 use pbif::method::{GeneratorMethodOptions, GeneratorSource};
 use pbif::sweep_file::{Sweep, SweepFile};
 
 use crate::common::room::Room;
+use crate::common::sweeps::{rows, swept};
 
 /// Growth with a rate that fluctuates, beside a state that relaxes: x has the gamma density x^(a/D - 1) exp(-x/D),
 /// whose mean is a and whose variance is a D. No end is given: no path crosses x = 0.
@@ -154,4 +157,23 @@ fn folds_of_a_population_are_located_where_its_equation_has_them() {
         assert_eq!(&row["status"], "located");
         assert!((value - exact).abs() <= error, "{value} ± {error}: {exact}");
     }
+}
+
+/// i' = b i (1 - i) - g i + s i (1 - i) ξ (Itô), a share of infected: nothing passes 1 upward. The density's power at
+/// zero is 2 (b - g)/s² - 2, which is zero at s = 1/√2: its peak reaches the end there.
+#[test]
+fn a_share_ends_at_one_where_its_noise_dies() {
+    let text = "[system.equations]\ni = \"b i (1 - i) - g i\"\n[system.noise]\ni = \"s i (1 - i)\"\n\
+         interpretation = \"ito\"\n[system.parameters]\nb = 1.5\ng = 1\n\
+         [sweep]\nparameter = \"s\"\nfrom = 0.2\nto = 0.95\npoints = 7\n";
+    let (sweep, result) = swept(text, "figures.draw=[]");
+    let axis = &sweep.problem.space().axes()[0];
+    assert_eq!((axis.from(), axis.to()), (0.0, 1.0));
+    let found = rows(&result, "i");
+    let [row] = found[..] else {
+        panic!("one change: {found:?}");
+    };
+    let off = (row.value - 0.5f64.sqrt()).abs();
+    assert!(off <= row.error && row.error < 1e-3, "{row:?}");
+    assert_eq!(row.status(), BifurcationStatus::Located);
 }

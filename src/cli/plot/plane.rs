@@ -63,7 +63,7 @@ pub(super) fn run(
         return super::super::print("`figures.formats` is an empty list: nothing to draw\n");
     }
     if arguments.out.is_none() {
-        stored.renew_figures()?;
+        stored.renew_figures(&files)?;
     }
     let summaries = crossed.iter().map(|one| one.summary(plane, curves));
     let text = summaries.collect::<String>() + &super::super::jobs::files(files);
