@@ -30,6 +30,7 @@ mod tests;
 mod transitions;
 mod turning;
 mod walk;
+mod watched;
 
 pub use advances::Rotation;
 pub use ensemble::{EnsembleRun, ensemble};

@@ -75,6 +75,7 @@ mod steady;
 mod survival;
 mod tensor;
 mod timed;
+mod times;
 
 pub use density_start::KnownDensity;
 pub use field::{FieldTarget, PassageField, field};

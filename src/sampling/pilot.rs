@@ -349,8 +349,9 @@ fn trajectories(
         stepper.advance(&mut states, 0, steps, &mut stream)?;
         Ok::<_, Cancelled>((starts, states, stream))
     };
-    let (starts, mut states, mut stream) = settled(2 * batch >= BATCHES)?;
-    if stand_still(&starts, &states, space, system.facts().phase) {
+    let is_all_over = 2 * batch >= BATCHES;
+    let (starts, mut states, mut stream) = settled(is_all_over)?;
+    if !is_all_over && stand_still(&starts, &states, space, system.facts().phase) {
         (_, states, stream) = settled(true)?;
     }
     let mut record = Record::new(system, space);

@@ -11,11 +11,9 @@ use crate::system::{System, natural_ends};
 /// Parts of the sweep at whose ends an axis is looked at.
 const PARTS: usize = 16;
 
-/// Parts of a range in which a zero of a noise is looked for, halvings by which it is found, and the number of values
-/// to one among which the one that was meant is looked for.
+/// Parts of a range in which a zero of a noise is looked for, and halvings that lead to neighbouring numbers.
 const LOOKS: usize = 400;
 const HALVINGS: usize = 80;
-const ROUND: f64 = 1e9;
 
 impl Settings {
     /// Gives axes of which no end is known, and whose zero no path crosses downward anywhere along the sweep, the end 0
@@ -152,11 +150,7 @@ fn first_zero_of_noise(
             false => high = middle,
         }
     }
-    // The amplitude of what is typed is zero at the number itself, not beside it.
-    let rounded = (high * ROUND).round() / ROUND;
-    (amplitude(rounded) == 0.0)
-        .then_some(rounded)
-        .or((amplitude(high) == 0.0).then_some(high))
+    (amplitude(high) == 0.0).then_some(high)
 }
 
 /// Those of some axes that stay positive in all the systems while all of them do, on these ranges of the others.
