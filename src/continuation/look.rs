@@ -53,6 +53,9 @@ impl CloserLook {
     pub(super) fn replace(&self, rows: &mut Vec<Located>) -> bool {
         let (before, others): (Vec<Located>, Vec<Located>) =
             rows.iter().cloned().partition(|row| self.holds(row));
+        if self.rows.is_empty() && !self.is_whole(&before) {
+            return false;
+        }
         let is_first = before.is_empty() && !self.rows.is_empty();
         let (told, tells) = (Told::by(&before), Told::by(&self.rows));
         let is_more = match tells {
@@ -72,6 +75,14 @@ impl CloserLook {
             rows.sort_by(|a, b| a.value.total_cmp(&b.value));
         }
         is_more
+    }
+
+    /// Whether rows of the sweep begin and end with what it counts at the ends of the stretch. Else one of them is of a
+    /// change that the counts have beside the stretch, about which finer cells that see nothing inside say nothing.
+    fn is_whole(&self, rows: &[Located]) -> bool {
+        let [before, after] = &self.ends;
+        let begins = rows.first().is_none_or(|row| row.before == *before);
+        begins && rows.last().is_none_or(|row| row.after == *after)
     }
 
     /// Whether as many rows as others have their values within theirs, and leave more in doubt.

@@ -106,7 +106,7 @@ impl<'a> Figures<'a> {
     }
 
     /// Draws the figure of that name and no other: nothing where no density is there to draw, several pages
-    /// (`pairs_xy_1`, `pairs_xy_2`) where one has no room for all of its panels.
+    /// (`pairs_xy_page1`, `pairs_xy_page2`) where one has no room for all of its panels.
     ///
     /// # Errors
     /// [`FigureError::Unknown`] for a name that is not one of [`Figures::names`].
@@ -141,7 +141,7 @@ impl<'a> Figures<'a> {
 
     /// Draws the figures that some words name, in their order: a word is a whole name, the beginning of names up to a
     /// `_` (`joint` names `joint_xy_0.5`), or `all`. Those without any density are left out, and words that name none
-    /// are passed over. One that has no room on a page has several, `…_1`, `…_2`.
+    /// are passed over. One that has no room on a page has several, `…_page1`, `…_page2`.
     pub fn draw_named<S: AsRef<str>>(&self, words: &[S]) -> Vec<Figure> {
         let is_wanted = |sketch: &&Sketch<'_>| {
             let mut words = words.iter().map(AsRef::as_ref);

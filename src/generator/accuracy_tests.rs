@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::banded_tests::null_vector;
 use super::{AdvectiveScheme, GeneratorOptions, assemble, automatic_grading, cell_masses};
-use crate::space::{Axis, CellSpace};
+use crate::space::{Axis, CellSpace, Grading};
 use crate::system::{Lanes, Noise, System, TypedModel, registry};
 
 fn bound(model: &str, given: &[(&str, f64)]) -> Arc<dyn System> {
@@ -131,6 +131,28 @@ fn every_scheme_is_of_fourth_order_or_better() {
             scheme.name()
         );
     }
+}
+
+#[test]
+fn graded_cells_are_of_fourth_order_too() {
+    // Energy-dependent damping bends along y, on which cells beside y = 0.3 are a third of those of even width.
+    let system = bound("rayleigh", &[("a", -0.2), ("b", 0.2), ("sigma2", 0.2)]);
+    let on = |count: usize| {
+        let (half, grading) = (
+            4.2,
+            Grading {
+                at: vec![0.3],
+                smallest: 2.8 / count as f64,
+            },
+        );
+        let x = Axis::uniform(-half, half, count).unwrap();
+        let y = Axis::graded(-half, half, count, &grading).unwrap();
+        let space = CellSpace::new(vec![x, y]).unwrap();
+        error(&*system, &space, AdvectiveScheme::default())
+    };
+    let (coarse, fine) = (on(60), on(120));
+    let order = (coarse / fine).log2();
+    assert!(order > 3.5, "{coarse:e} {fine:e}, order {order}");
 }
 
 #[test]

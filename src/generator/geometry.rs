@@ -3,6 +3,7 @@
 use super::GeneratorOptions;
 use super::modes::ModeAxis;
 use super::scheme::{AdvectiveScheme, DAMPING_BESIDE_MODES, Dissipation, REACH, Window};
+use super::smooth::{EVEN_OFFSETS, GAUSS};
 use crate::space::{Axis, CellSpace, Series};
 use crate::system::{System, closed_ends};
 
@@ -37,6 +38,8 @@ pub(super) struct AxisGeometry {
     pub(super) widths: Vec<f64>,
     /// Edges, one more than cells.
     pub(super) edges: Vec<f64>,
+    /// Offsets of the quadrature points of each cell from its node, in the cell coordinate.
+    pub(super) inner_offsets: Vec<[f64; 4]>,
     /// dx/du at the edges.
     pub(super) face_widths: Vec<f64>,
     /// Lower and upper end.
@@ -82,6 +85,7 @@ impl AxisGeometry {
             nodes: axis.nodes().to_vec(),
             widths: (0..count).map(|cell| axis.node_stretch(cell)).collect(),
             edges: axis.edges().to_vec(),
+            inner_offsets: (0..count).map(|cell| inner_offsets(axis, cell)).collect(),
             face_widths: (0..=count).map(|face| axis.edge_stretch(face)).collect(),
             ends: closed_ends(system, index, &ranges).map(end),
             stencils: (0..=count)
@@ -126,6 +130,28 @@ impl AxisGeometry {
     pub(super) fn count(&self) -> usize {
         self.nodes.len()
     }
+}
+
+/// The four quadrature points of a cell, ascending: two Gauss points in either half.
+pub(super) fn inner_points([from, node, to]: [f64; 3]) -> [f64; 4] {
+    let point = |from: f64, to: f64, share: f64| from + share * (to - from);
+    let [near, far] = GAUSS;
+    [
+        point(from, node, near),
+        point(from, node, far),
+        point(node, to, near),
+        point(node, to, far),
+    ]
+}
+
+/// Offsets of the quadrature points of a cell from its node, in the cell coordinate.
+fn inner_offsets(axis: &Axis, cell: usize) -> [f64; 4] {
+    if axis.is_modes() || axis.has_even_cells(cell) {
+        return EVEN_OFFSETS;
+    }
+    let edges = axis.edges();
+    let points = inner_points([edges[cell], axis.nodes()[cell], edges[cell + 1]]);
+    points.map(|x| axis.offset(cell, x))
 }
 
 /// Distance in cell numbers between neighbours along each axis.

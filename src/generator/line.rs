@@ -113,7 +113,7 @@ impl Line {
         self.face_potential.push(potential);
         for cell in 0..axis.count() {
             let (node, width) = (axis.nodes[cell], axis.widths[cell]);
-            let smooth = self.smooth.inside(cell);
+            let smooth = self.smooth.inside(cell, axis.inner_offsets[cell]);
             let rate = |point: usize| {
                 let rest = self.inner_drift[4 * cell + point] - smooth[point];
                 fitted_rate(rest, self.inner_diffusion[4 * cell + point], width)

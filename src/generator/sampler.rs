@@ -1,9 +1,8 @@
 //! Drift and diffusion along grid lines, evaluated in batches.
 
 use super::GeneratorError;
-use super::geometry::AxisGeometry;
+use super::geometry::{AxisGeometry, inner_points};
 use super::line::Line;
-use super::smooth::GAUSS;
 use crate::MAX_DIMENSION;
 use crate::system::{LANES, Lanes, System};
 
@@ -11,9 +10,7 @@ use crate::system::{LANES, Lanes, System};
 pub(super) fn quadrature_points(axis: &AxisGeometry) -> Vec<f64> {
     let mut points = Vec::with_capacity(4 * axis.count());
     for (cell, &node) in axis.nodes.iter().enumerate() {
-        for (from, to) in [(axis.edges[cell], node), (node, axis.edges[cell + 1])] {
-            points.extend(GAUSS.map(|share| from + share * (to - from)));
-        }
+        points.extend(inner_points([axis.edges[cell], node, axis.edges[cell + 1]]));
     }
     points
 }

@@ -9,6 +9,14 @@
 /// Places of the quadrature points in a cell, as a share of its lower and then its upper half.
 pub(super) const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
+/// Offsets of the quadrature points from the node of a cell of even width, in cells.
+pub(super) const EVEN_OFFSETS: [f64; 4] = [
+    0.5 * GAUSS[0] - 0.5,
+    0.5 * GAUSS[1] - 0.5,
+    0.5 * GAUSS[0],
+    0.5 * GAUSS[1],
+];
+
 /// Passes of smoothing. With half or twice as many, densities with friction differ by a fraction of their errors
 /// (docs/accuracy.md).
 const PASSES: usize = 8;
@@ -48,13 +56,12 @@ impl SmoothPart {
         self.at(cell, 0.0)
     }
 
-    /// Values at the quadrature points of a cell.
-    pub(super) fn inside(&self, cell: usize) -> [f64; 4] {
-        let [near, far] = GAUSS.map(|share| 0.5 * share);
-        [near - 0.5, far - 0.5, near, far].map(|offset| self.at(cell, offset))
+    /// Values at places of a cell, given by their offsets from its node in the cell coordinate.
+    pub(super) fn inside(&self, cell: usize, offsets: [f64; 4]) -> [f64; 4] {
+        offsets.map(|offset| self.at(cell, offset))
     }
 
-    /// Value in a cell, at an offset from its middle as a share of the cell.
+    /// Value in a cell, at an offset from its node in the cell coordinate.
     fn at(&self, cell: usize, offset: f64) -> f64 {
         let weights = [
             0.5 * (0.5 - offset).powi(2),
@@ -106,13 +113,21 @@ mod tests {
     fn straight_lines_and_parabolas_are_smooth() {
         let (smooth, values) = followed(|u| 3.0 - 2.0 * u);
         for cell in 0..32 {
-            for (found, value) in smooth.inside(cell).iter().zip(&values[4 * cell..]) {
+            for (found, value) in smooth
+                .inside(cell, EVEN_OFFSETS)
+                .iter()
+                .zip(&values[4 * cell..])
+            {
                 assert!((found - value).abs() < 1e-12, "{cell}");
             }
         }
         let (smooth, values) = followed(|u| (u - 7.0) * (u - 7.0));
         for cell in 12..20 {
-            for (found, value) in smooth.inside(cell).iter().zip(&values[4 * cell..]) {
+            for (found, value) in smooth
+                .inside(cell, EVEN_OFFSETS)
+                .iter()
+                .zip(&values[4 * cell..])
+            {
                 assert!((found - value).abs() < 1e-11, "{cell}");
             }
         }
@@ -122,7 +137,10 @@ mod tests {
     fn a_jump_is_left_out_and_nothing_else_far_from_it() {
         let (smooth, values) = followed(|u| 5.0 * (u - 16.0).signum());
         let rest = |cell: usize| {
-            let pairs = smooth.inside(cell).into_iter().zip(&values[4 * cell..]);
+            let pairs = smooth
+                .inside(cell, EVEN_OFFSETS)
+                .into_iter()
+                .zip(&values[4 * cell..]);
             pairs
                 .map(|(smooth, value)| value - smooth)
                 .collect::<Vec<f64>>()
@@ -145,7 +163,7 @@ mod tests {
         assert!((smooth.at_node(0) - 2.5).abs() < 1e-15);
         assert!(
             smooth
-                .inside(0)
+                .inside(0, EVEN_OFFSETS)
                 .iter()
                 .all(|value| (value - 2.5).abs() < 1e-15)
         );

@@ -125,6 +125,14 @@ impl<'a> Reporter<'a> {
         }
     }
 
+    /// By how much what may lie beyond the ends shifts the mean along each axis, from the moments of the axes.
+    pub(super) fn shifts(&self, of_axes: &[EstimatedMoments]) -> Vec<f64> {
+        let ends = tails::beyond(self.space(), (&self.beyond, self.leak), of_axes);
+        let axes = of_axes.iter().take(self.space().dimension()).enumerate();
+        axes.map(|(axis, one)| ends.of(axis, &one.moments).mean)
+            .collect()
+    }
+
     /// The solution with these densities, and with the measures that are derived from them.
     pub(super) fn solution(
         mut self,

@@ -199,11 +199,13 @@ impl Sample {
     }
 
     /// Where the tail begins. Of the exits after a time, the first and the second half have a rate each; where the two
-    /// agree within their errors, the second half is the tail, and else the question is asked of that half again. What
-    /// decays faster has decayed more in the second half than in the first, where it could no longer be seen.
+    /// agree within their errors twice in a row, the second half of the first time is the tail, and else the question
+    /// is asked of the second half again. What decays faster has decayed more in the second half than in the first,
+    /// where it could no longer be seen; a rate that rises first and falls then may agree once by chance.
     fn tail(&self) -> f64 {
         let exits = self.exits();
         let (mut first, mut from) = (0, 0.0);
+        let mut agreed: Option<f64> = None;
         while exits - first >= 2 * FEWEST {
             let middle = first + (exits - first) / 2;
             let at = self.times[middle - 1];
@@ -212,11 +214,13 @@ impl Sample {
             let late = counts[1] / self.at_risk(at, self.longest);
             let error = (1.0 / counts[0] + 1.0 / counts[1]).sqrt();
             (first, from) = (middle, at);
-            if (early / late).ln().abs() <= LIKE * error {
-                break;
-            }
+            agreed = match ((early / late).ln().abs() <= LIKE * error, agreed) {
+                (true, Some(tail)) => return tail,
+                (true, None) => Some(at),
+                (false, _) => None,
+            };
         }
-        from
+        agreed.unwrap_or(from)
     }
 
     fn numbers(&self, tail: f64, times: &[f64], shares: &[f64]) -> Vec<f64> {

@@ -94,6 +94,8 @@ pub(crate) fn step_bias(
         .collect();
     let lanes = batches?.concat();
     let additive = (system.noises().iter()).all(|noise| noise.additive().is_some());
+    // A path that is put back at a wall is so to first order at best.
+    let additive = additive && system.facts().reflecting.is_empty();
     // d(h) - d(h/2) = (1 - 2^-order) × bias of h.
     let extrapolation = match order(integrator, additive) {
         1 => 2.0,

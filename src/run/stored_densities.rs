@@ -14,7 +14,7 @@ use crate::density::{
 };
 use crate::method::OneAxisFamily;
 use crate::space::{Axis, CellSpace};
-use crate::system::{Family, Symmetry, symmetry_over_a_period};
+use crate::system::{Family, Symmetry, proved_symmetry, symmetry_over_a_period};
 
 /// The store of a run, opened for the observables that are wanted of it.
 pub(super) struct StoredDensities {
@@ -97,12 +97,26 @@ impl StoredDensities {
         let with_centre = self.observed.iter().any(|one| one.centre.is_some());
         let symmetric = system.as_deref().filter(|_| with_centre);
         // The centre that is stored is that of the value that was solved first, and others need not have it.
-        let symmetry = symmetric.and_then(|system| symmetry_over_a_period(system, &self.ends));
+        let over_a_period = symmetric.and_then(|system| symmetry_over_a_period(system, &self.ends));
+        let at_any_phase = symmetric.and_then(|system| proved_symmetry(system, &self.ends));
+        // At one phase a reflection does not serve that needs half a period; axes there are those of the state.
+        let reflects = |observable: Observable| {
+            let axes = observable.axes();
+            let (axes, symmetry) = match self.family.at_phase(&axes) {
+                Some((states, _)) => (states, &at_any_phase),
+                None => (axes, &over_a_period),
+            };
+            // Axes of quantities are numbered on from those that are reflected.
+            let is_reflected =
+                |axis: &usize, one: &Symmetry| one.reflected.get(*axis).copied().unwrap_or(true);
+            let one = symmetry.as_ref();
+            one.is_some_and(|one| axes.iter().all(|axis| is_reflected(axis, one)))
+        };
         let densities = self.observed.iter();
         densities
             .map(|observed| {
-                let mut estimate =
-                    observed.estimate(&self.path, index as u64, symmetry.as_ref())?;
+                let has_centre = reflects(observed.observable);
+                let mut estimate = observed.estimate(&self.path, index as u64, has_centre)?;
                 let mut axes = observed.observable.axes().into_iter();
                 let is_forced = system
                     .as_ref()
@@ -129,14 +143,8 @@ impl Observed {
         &self,
         path: &Path,
         index: u64,
-        symmetry: Option<&Symmetry>,
+        has_centre: bool,
     ) -> Result<EstimatedDensity, RunError> {
-        // Axes of quantities are numbered on from those that are reflected.
-        let axes = self.observable.axes();
-        let reflects = |symmetry: &Symmetry| {
-            let mut axes = axes.iter();
-            axes.all(|&axis| symmetry.reflected.get(axis).copied().unwrap_or(true))
-        };
         let read = |array: &StoredArray| at_index(path, array, index);
         let cells = self.axes.iter().map(Axis::count).product();
         let in_cells = |array: &StoredArray| -> Result<Vec<f64>, RunError> {
@@ -153,8 +161,7 @@ impl Observed {
                 kinks.push(Kink { axis, at, jump });
             }
         }
-        let centre = self.centre.clone();
-        let centre = centre.filter(|_| symmetry.is_some_and(reflects));
+        let centre = self.centre.clone().filter(|_| has_centre);
         let density = Density {
             axes: self.axes.clone(),
             values: in_cells(&self.density)?,

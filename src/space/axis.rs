@@ -264,6 +264,19 @@ impl Axis {
         Some(piece.map_or(self.width(cell), |piece| piece.stretch(x)))
     }
 
+    /// Whether a cell and those around it up to the next graded place have one width.
+    pub(crate) fn has_even_cells(&self, cell: usize) -> bool {
+        self.piece_of(cell).is_none_or(Piece::is_even)
+    }
+
+    /// Distance of a place from the node of its cell, in the cell coordinate: -½ and ½ at the edges.
+    pub(crate) fn offset(&self, cell: usize, x: f64) -> f64 {
+        match self.piece_of(cell) {
+            Some(piece) => piece.coordinate(x) - (cell - piece.first_cell) as f64 - 0.5,
+            None => (x - self.nodes[cell]) / self.width(cell),
+        }
+    }
+
     fn piece_of(&self, cell: usize) -> Option<&Piece> {
         let holds = |piece: &&Piece| cell < piece.first_cell + piece.cells;
         self.pieces.iter().find(holds)

@@ -126,9 +126,14 @@ impl Piece {
         bulk + graded
     }
 
+    /// Whether all of its cells have one width.
+    pub(super) fn is_even(&self) -> bool {
+        self.terms.is_empty() && self.more == 0.0
+    }
+
     /// The x with the given cell coordinate, by bisection (used once an edge).
     pub(super) fn inverse(&self, coordinate: f64) -> f64 {
-        if self.terms.is_empty() && self.more == 0.0 {
+        if self.is_even() {
             return self.from + (self.to - self.from) * coordinate / self.cells as f64;
         }
         let (mut low, mut high) = (self.from, self.to);

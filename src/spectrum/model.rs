@@ -181,6 +181,8 @@ pub(super) struct GridModel {
     pub(super) modes: Vec<(Complex<f64>, f64)>,
     /// How many of them stand, the first ones; of the rest it is known that they are there.
     pub(super) standing: usize,
+    /// Whether rounding hides the rate of the slowest mode.
+    pub(super) hides: bool,
 }
 
 /// Eigenvalues up to the first that fewer vectors do not give as well, each with what they change.

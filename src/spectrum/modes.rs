@@ -26,6 +26,9 @@ const BESIDE: usize = 3;
 /// Relative change by half of the dissipation from which a number is none of the equation.
 pub(super) const ARTEFACT: f64 = 0.3;
 
+/// A mode that is slower than this share of the rate at which states change is no artefact.
+const SLOW: f64 = 1e-3;
+
 /// Seed of the vectors that begin.
 pub(super) const SEED: u64 = 0x5eed;
 
@@ -77,6 +80,10 @@ pub(super) fn modes(
     let enough = (wanted + SPARE, motion.rate);
     let options = (rates, cancellation);
     let mut found = at_real_shifts(grid, enough, &mut numbers, options, &mut work)?;
+    if found.hides {
+        // The slowest mode is not known, and no other is the first.
+        return Ok((GridModes::default(), work));
+    }
     if found.modes.is_empty() {
         found = near_harmonics(grid, enough, &mut numbers, options, &mut work)?;
     }
@@ -93,6 +100,7 @@ fn of_model(grid: &Grid, mut found: GridModel, most: usize, motion: &Motion) -> 
         products,
         modes,
         standing,
+        ..
     } = &mut found;
     products.grow(rows, columns, [&grid.full, &grid.half]);
     let size = columns.vectors.len().min(rows.vectors.len());
@@ -128,7 +136,16 @@ fn of_model(grid: &Grid, mut found: GridModel, most: usize, motion: &Motion) -> 
     in_order(&mut carried, |one| one.value);
     let mut modes: Vec<GridMode> = carried.iter().filter(|one| one.stands).cloned().collect();
     let discriminant = discriminant(&modes);
-    modes.retain(|one| (one.change / one.value).norm() <= ARTEFACT);
+    // What is that slow is an exchange between states: where dissipation or rounding hides its rate it stays a mode, of
+    // which nothing is known, and no faster one takes its number.
+    let hidden = SLOW * motion.rate;
+    modes.retain_mut(|one| {
+        let is_sound = (one.change / one.value).norm() <= ARTEFACT;
+        if !is_sound {
+            one.error = f64::INFINITY;
+        }
+        is_sound || one.value.norm() <= hidden
+    });
     GridModes {
         modes,
         discriminant,

@@ -27,6 +27,9 @@ const SHIFTS: usize = 3;
 /// A mode this many times slower than the shift has a shift of its own.
 const SLOWER: f64 = 30.0;
 
+/// An eigenvalue that does not decay is zero but for rounding up to this share of the shift.
+const ROUNDING: f64 = 1e-9;
+
 /// Slowest decay beside the shift that is looked for.
 const SLOWEST: f64 = 1e-13;
 
@@ -49,7 +52,8 @@ pub(super) fn at_real_shifts(
     if found.columns.fill(cells) && found.rows.fill(cells) {
         (found.products).grow(&found.rows, &found.columns, [&grid.full, &grid.half]);
         let size = found.columns.vectors.len();
-        found.modes = Standing::new(&found.products, size, wanted, rate).modes;
+        let standing = Standing::new(&found.products, size, wanted, rate);
+        (found.modes, found.hides) = (standing.modes, standing.hides);
         return Ok(found);
     }
     let mut shift = rate;
@@ -70,7 +74,9 @@ pub(super) fn at_real_shifts(
                 let size = found.columns.vectors.len();
                 let standing = Standing::new(&found.products, size, wanted, rate);
                 found.modes = standing.modes;
-                if standing.is_enough || (found.modes.is_empty() && used >= IN_VAIN) {
+                found.hides |= standing.hides;
+                if found.hides || standing.is_enough || (found.modes.is_empty() && used >= IN_VAIN)
+                {
                     break;
                 }
             }
@@ -79,6 +85,9 @@ pub(super) fn at_real_shifts(
             row = solver.expected(&stage, &found.rows.vectors[last])?.values();
         }
         work.add(solver.work);
+        if found.hides {
+            break;
+        }
         let slowest = found.modes.first().map_or(shift, |(one, _)| -one.re);
         if slowest * SLOWER >= shift || slowest <= SLOWEST * rate {
             break;
@@ -96,6 +105,9 @@ pub(super) fn at_real_shifts(
 struct Standing {
     modes: Vec<(Complex<f64>, f64)>,
     is_enough: bool,
+    /// Whether a mode is so slow that rounding hides its rate, as an exchange over a high barrier is: the steady state,
+    /// which alone should not decay, is not among these.
+    hides: bool,
 }
 
 impl Standing {
@@ -106,9 +118,12 @@ impl Standing {
             return Self {
                 modes,
                 is_enough: false,
+                hides: false,
             };
         };
         let away = |value: Complex<f64>| (value - shift).norm();
+        let is_hidden = |one: &Complex<f64>| one.re >= 0.0 && one.norm() <= ROUNDING * shift;
+        let hides = all.iter().any(is_hidden);
         let mut all: Vec<Complex<f64>> = all.into_iter().filter(|one| one.re < 0.0).collect();
         all.sort_by(|a, b| away(*a).total_cmp(&away(*b)));
         let farthest = all.len();
@@ -122,6 +137,7 @@ impl Standing {
         in_order(&mut modes, |(value, _)| *value);
         Self {
             is_enough: reaches && modes.len() >= wanted,
+            hides,
             modes,
         }
     }

@@ -12,6 +12,10 @@ use crate::space::CellSpace;
 /// Largest variance of the left vector inside the states, over the square of their distance, up to which there are two.
 const TWO_STATES: f64 = 0.1;
 
+/// By how much more of the distance cells half-way between the two heights shift the average of a state than they add
+/// to its variance over the square of that distance.
+const HALF_WAY: f64 = 2.0;
+
 /// Rates between two states, per unit of time, each with its error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Switching {
@@ -49,8 +53,9 @@ impl Plateau {
 /// is no exchange between them: it oscillates, or its left vector is not flat in each, or has one height in both.
 ///
 /// The error holds that of the decay rate, what the second discretisation changes of the shares, what whole cells at
-/// the borders of the regions change in place of parts of them, and the variance of the left vector inside: by
-/// so much of it the mode is not an exchange of two states.
+/// the borders of the regions change in place of parts of them, and the variance of the left vector inside over the
+/// square of the distance of its heights: a state of which so large a part belongs to the other one shifts the shares
+/// of both by about as much, however small the smaller one is.
 pub fn switching(
     modes: &SlowModes,
     space: &CellSpace,
@@ -86,7 +91,7 @@ pub fn switching(
     let rate = |share: f64| {
         (
             decay * share,
-            error * share + decay * (change + spread * share),
+            error * share + decay * (change + HALF_WAY * spread),
         )
     };
     Some(Switching {

@@ -209,7 +209,7 @@ fn sweeps_over_one_parameter_lie_in_the_band_of_coulomb_friction() {
     insta::assert_snapshot!(format!("{points} points\n{}", told.join("\n")), @r"
     45 points
     followed by 46 solves, 19 + 146
-    checked by 14 solves, 6 + 158
+    checked by 14 solves, 6 + 159
     ");
 
     // The kink of y is none where nothing jumps, at any noise; its slope follows from the equations.

@@ -98,6 +98,50 @@ fn by_quadrature(u: impl Fn(f64) -> f64, d: f64, a: f64, b: f64, low: f64) -> (f
 }
 
 #[test]
+fn errors_of_an_oscillator_over_a_barrier_hold_from_weak_damping_to_strong() {
+    // Damping, temperature, tilt, border and start. At weak damping the density is thin along the energy.
+    let wells = [
+        (0.02, 0.06_f64, 0.0, 0.0, -1.0),
+        (0.05, 0.08, -0.05, -0.1, -0.95),
+        (0.1, 0.06, 0.0, 0.0, -1.0),
+        (0.2, 0.1, 0.05, 0.1, -1.05),
+        (0.5, 0.06, 0.0, 0.0, -1.0),
+        (2.0, 0.08, 0.0, 0.3, -1.0),
+    ];
+    for (damping, temperature, tilt, border, start) in wells {
+        let (drift, noise) = (
+            format!("-{damping} y + x - x^3 - {tilt}"),
+            (2.0 * damping * temperature).sqrt().to_string(),
+        );
+        let model = model(&[("x", "y"), ("y", &drift)], &[("y", &noise)]);
+        let half = 1.9 * (temperature / 0.06).sqrt();
+        let on = |n: usize| {
+            let axes = [(-1.9, 1.9, n), (-half, half, n)];
+            passage(&model, &format!("x > {border}"), &[start, 0.0], &axes)
+        };
+        let fine = on(240);
+        for n in [80, 100, 140] {
+            let coarse = on(n);
+            for (what, (value, error), (better, rest)) in [
+                ("mean", coarse.mean, fine.mean),
+                ("deviation", coarse.deviation, fine.deviation),
+                ("rate", coarse.rate, fine.rate),
+            ] {
+                let off = (value - better).abs();
+                println!(
+                    "{damping} {n} {what}: {value:.6} ± {error:.1e}, {better:.6} ± {rest:.1e}, {:.2}",
+                    off / error
+                );
+                assert!(off < error + rest, "{damping} {n} {what}");
+            }
+            // A part of second order would leave a ten-thousandth.
+            let off = (coarse.mean.0 / fine.mean.0 - 1.0).abs();
+            assert!(n < 140 || off < 5e-5, "{damping} {n}: {off:e}");
+        }
+    }
+}
+
+#[test]
 fn wells_of_one_dimension_are_left_as_quadrature_says() {
     for d in [0.05, 0.1, 0.2] {
         let noise = format!("sqrt(2*{d})");

@@ -366,6 +366,82 @@ fn measured<const N: usize>(text: &str, names: [&str; N]) -> [pbif::continuation
     })
 }
 
+/// A tilted double well whose noise is swept from a value on.
+fn tilted_well(noise: f64, more: &str) -> String {
+    format!(
+        r#"
+[system.equations]
+x = "x - x^3 + 0.1"
+[system.noise]
+x = "s"
+[system.parameters]
+s = {noise}
+[sweep]
+parameter = "s"
+from = {noise}
+to = 0.4
+points = 2
+[cells]
+x = {{ from = -2.4, to = 2.4, count = 160 }}
+{more}
+"#
+    )
+}
+
+#[test]
+fn a_rate_that_rounding_hides_does_not_give_its_number_to_a_faster_mode() {
+    // By quadrature the exchange between the wells has a rate of 4e-15 at a noise of 0.1, and far less below.
+    use pbif::continuation::{DensitySource, Finding};
+    use pbif::method::{GeneratorMethodOptions, GeneratorSource};
+    use pbif::sweep_file::SweepFile;
+    let never = Cancellation::new();
+    for noise in [0.06, 0.1, 0.12] {
+        let text = tilted_well(noise, "[relaxation]\nmodes = 1");
+        let sweep = SweepFile::parse("deep.toml", &text).validate().unwrap();
+        let sweep = sweep.prepare(&never).unwrap();
+        let options = GeneratorMethodOptions::default();
+        let source = GeneratorSource::new(&sweep.problem, &options).unwrap();
+        let report = source.open(&never).solve(noise).unwrap().report;
+        let told = report
+            .measures
+            .iter()
+            .find(|one| one.name == "decay_rate_1");
+        assert!(
+            told.is_none_or(|one| one.value.is_nan()),
+            "{noise}: {told:?}"
+        );
+        let is_told = |one: &Finding| matches!(one, Finding::FewSlowModes { .. });
+        assert!(report.findings.iter().any(is_told), "{:?}", report.findings);
+    }
+}
+
+#[test]
+fn rates_of_the_rarer_state_hold_for_regions_that_reach_beyond_the_wells() {
+    // The bottoms of the wells are a measure for all others: of the rates of states a border has no part.
+    for noise in [0.25, 0.3, 0.35] {
+        let of = |from: &str, to: &str| {
+            let go = format!(
+                "[passage]\ngo = {{ from = \"{from}\", to = \"{to}\", switching = \"on\" }}"
+            );
+            between(&tilted_well(noise, &go))
+        };
+        let bottoms = of("x < -0.7", "x > 0.7");
+        for (from, to) in [("x < -0.5", "x > -0.45"), ("x < -0.2", "x > -0.1")] {
+            for ((value, error), (better, rest)) in of(from, to).into_iter().zip(bottoms) {
+                let off = (value - better).abs();
+                println!(
+                    "{noise} {from}: {value:e} ± {error:.1e}, {better:e}, {:.2}",
+                    off / error
+                );
+                assert!(
+                    off < error + rest,
+                    "{noise} {from}: {value:e} ± {error:e}, {better:e}"
+                );
+            }
+        }
+    }
+}
+
 /// Duffing's well, ΔV = 1/4, with damping g from 0.5 on, at a temperature, on n × n cells; passages between two
 /// regions.
 fn well(temperature: f64, [x, y]: [f64; 2], n: usize, [left, right]: [&str; 2]) -> String {

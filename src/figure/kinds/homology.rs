@@ -193,8 +193,8 @@ fn draw(result: &SweepResult, number: usize, print: &Print<'_>) -> Drawn {
     legend.draw(&page, map.left + 0.5 * map.width, below);
     let seen = format!(
         "Betti numbers of the sets where the steady-state density {} exceeds a level: their pieces and holes, over {} and the level as a share of \
-         the highest peak. Beside a P-bifurcation the levels of two pieces are as few as the valley is shallow, and \
-         end in a tip at its line.",
+         the highest peak. Beside a P-bifurcation the levels of two pieces are as few as the valley is shallow; they are \
+         drawn up to half-way to the next value that was solved.",
         caption::density(family, watched),
         caption::parameter(family)
     );

@@ -65,7 +65,7 @@ fn draw(result: &SweepResult, number: usize, print: &Print<'_>) -> Drawn {
         })
         .collect();
     let seen = format!(
-        "Indicators of P-bifurcations of the steady-state density {} over {}; a P-bifurcation is where one is zero, bands are \
+        "Indicators of P-bifurcations of the steady-state density {} over {}; a P-bifurcation is where one is zero and the features that are counted change, bands are \
          systematic errors and two standard errors of sampling.",
         caption::density(family, watched),
         caption::parameter(family)

@@ -186,11 +186,13 @@ fn draw(result: &SweepResult, all: &[MeasureSeries], (height, print): (f64, &Pri
     );
     for crossing in crossings(result).filter(|one| names.contains(&one.asked.measure.as_str())) {
         let way = if crossing.rises { "rises" } else { "falls" };
-        let [value, error] = [crossing.value, crossing.error].map(number);
+        let (value, error) = (crossing.value, crossing.error);
+        let value = caption::to_digits_of_error(value, error);
         let (measure, level) = (&crossing.asked.measure, number(crossing.asked.level));
         let label = &crossing.label;
-        seen +=
-            &format!(" {label}: {measure} {way} through {level} at {symbol} = {value} ± {error}.");
+        seen += &format!(
+            " {label}: {measure} {way} through {level} at {symbol} = {value} ± {error:.1e}."
+        );
     }
     let rows = all.iter().flat_map(|one| {
         one.values.iter().map(|&(at, value, error)| {

@@ -174,7 +174,7 @@ impl<'a> Sketch<'a> {
         for (number, figure) in drawn.iter_mut().enumerate() {
             figure.name.clone_from(&self.name);
             if count > 1 {
-                figure.name += &format!("_{}", number + 1);
+                figure.name += &format!("_page{}", number + 1);
                 let caption = figure.caption.trim_end();
                 figure.caption = format!("{caption} Page {} of {count}.\n", number + 1);
             }

@@ -25,8 +25,9 @@ pub(super) const KIND: Kind = Kind {
 /// Two figures an observed pair of axes: the density on a line, and the same with an integral of one, which is the
 /// density of one axis where the other has a value.
 fn sketches<'a>(sweep: &Sweep<'a>) -> Vec<Sketch<'a>> {
-    const WAY: &str = "on lines through its centre";
-    const CONDITIONAL: &str = "on lines through its centre, each with an integral of one";
+    const WAY: &str = "on the lines through its centre of symmetry or first summit";
+    const CONDITIONAL: &str =
+        "on the lines through its centre of symmetry or first summit, each with an integral of one";
     let plain: DrawJoint = |joint, print| draw(joint, false, print);
     let conditional: DrawJoint = |joint, print| draw(joint, true, print);
     let kinds = [

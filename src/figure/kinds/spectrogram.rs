@@ -169,11 +169,12 @@ fn spectral_rows(result: &SweepResult, asked: &SpectrumOf) -> String {
     let own = |crossing: &&LevelCrossing| crossing.spectral().is_some_and(|(_, of)| of == asked.of);
     let rows = result.labels.iter().filter_map(|row| {
         let crossing = row.spectral_change().filter(own)?;
-        let [value, error] = [crossing.value, crossing.error].map(table::number);
+        let (value, error) = (crossing.value, crossing.error);
+        let value = caption::to_digits_of_error(value, error);
         let change = row.words(family)?.change;
         let parameter = family.parameter();
         Some(format!(
-            "{}: {change}, {parameter} = {value} ± {error}.",
+            "{}: {change}, {parameter} = {value} ± {error:.1e}.",
             crossing.label
         ))
     });

@@ -84,7 +84,7 @@ fn in_letters(symbol: &str) -> String {
 }
 
 /// A value to the second digit of its error.
-fn to_digits_of_error(value: f64, error: f64) -> String {
+pub(crate) fn to_digits_of_error(value: f64, error: f64) -> String {
     if !(error > 0.0 && error.is_finite()) {
         return number(value);
     }

@@ -1,5 +1,5 @@
 //! With what error the generator knows how the mean of a state moves with the forcing: what the second scheme changes,
-//! the last harmonic of the mean (what is left out is less), and what the solver leaves.
+//! the last harmonic of the mean (what is left out is less), what the solver leaves, and what lies beyond the ends.
 
 use crate::method::forcing::Forced;
 
@@ -13,6 +13,8 @@ pub(super) struct Solved<'a> {
     pub(super) change: &'a [f64],
     /// Estimated L1 error of the unknowns.
     pub(super) error: f64,
+    /// By how much what lies beyond the ends of the ranges shifts the mean along each axis.
+    pub(super) shifts: &'a [f64],
 }
 
 /// Amplitude of the mean along an axis, with its error.
@@ -24,6 +26,7 @@ pub(super) fn amplitude(forced: &Forced<'_>, solved: &Solved<'_>, axis: usize) -
         SAFETY * forced.amplitude(axis, 1, solved.change),
         forced.amplitude(axis, last.max(2), solved.unknowns),
         2.0 * largest * solved.error,
+        2.0 * solved.shifts.get(axis).copied().unwrap_or(0.0),
     ];
     (
         forced.amplitude(axis, 1, solved.unknowns),

@@ -134,7 +134,8 @@ impl GeneratorSession {
             .report
             .measures
             .extend(self.rotations(solved, &second.change)?);
-        let answers = self.answers_to_forcing(solved, &second.change);
+        let shifts = reporter.shifts(&moments);
+        let answers = self.answers_to_forcing(solved, (&second.change, &shifts));
         reporter.report.measures.extend(answers);
         let cells = Cells {
             system: solved.system.as_ref(),
@@ -189,8 +190,13 @@ impl GeneratorSession {
         Ok(found)
     }
 
-    /// How states answer to a forcing; nothing in a check.
-    fn answers_to_forcing(&self, solved: &PointSolve, change: &[f64]) -> Vec<Measure> {
+    /// How states answer to a forcing, from what the second scheme changes, and by how much the ends of the ranges
+    /// shift the mean of each axis; nothing in a check.
+    fn answers_to_forcing(
+        &self,
+        solved: &PointSolve,
+        (change, shifts): (&[f64], &[f64]),
+    ) -> Vec<Measure> {
         let family = self.source.problem.family();
         let Some(phase) = family.model().phase_axis().filter(|_| !self.source.checks) else {
             return Vec::new();
@@ -204,6 +210,7 @@ impl GeneratorSession {
             unknowns: &solved.steady.mass,
             change,
             error: solved.steady.info.error_estimate,
+            shifts,
         };
         forced.measures(family, |axis| amplitude(&forced, &solved, axis))
     }
