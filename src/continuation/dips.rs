@@ -6,7 +6,7 @@
 
 use super::Point;
 use crate::density::EstimatedDensity;
-use crate::topology::Flank;
+use crate::topology::{FeatureKind, Flank, Verdict};
 
 /// Flanks at neighbouring points farther apart than this, in ranges, are not one that moved.
 const ONE_FLANK: f64 = 0.1;
@@ -93,6 +93,44 @@ pub(super) fn between_flanks(points: &[(&Point, &Flanks)], tolerance: f64) -> Op
             Some(a.value + share * width)
         })
     })
+}
+
+/// The middle of two neighbours that count the same peaks of a marginal, one of which has moved farther than a peak
+/// moves: one may have been born between them, and the other have vanished, where no value was solved.
+pub(super) fn between_leaps(points: &[(&Point, &Flanks)], tolerance: f64) -> Option<f64> {
+    let observables = points.first().map_or(0, |point| point.1.len());
+    let mut pairs = points.windows(2);
+    pairs.find_map(|pair| {
+        let (a, b) = (pair[0].0, pair[1].0);
+        let middle = 0.5 * (a.value + b.value);
+        let is_wide = b.value - a.value > tolerance && a.value < middle && middle < b.value;
+        let leaps = |observable: usize| {
+            let density = &a.densities[observable];
+            // Noise moves peaks on plateaus, and where a turn begins, none is before another.
+            let is_exact = density.variants.second_scheme().is_some();
+            let is_line = density.density.axes.len() == 1 && !density.density.axes[0].is_closed();
+            if !(is_exact && is_line) {
+                return false;
+            }
+            let reach = reach(density)[0];
+            let [first, second] = [a, b].map(|point| peaks(point, observable));
+            let mut moved = first.iter().zip(&second);
+            first.len() == second.len() && moved.any(|(one, other)| (one - other).abs() > reach)
+        };
+        (is_wide && (0..observables).any(leaps)).then_some(middle)
+    })
+}
+
+/// Where the peaks of a marginal are that are counted, ascending.
+fn peaks(point: &Point, observable: usize) -> Vec<f64> {
+    let features = point.detections[observable].features.iter();
+    let counted =
+        features.filter(|one| one.kind == FeatureKind::Peak && one.verdict == Verdict::Present);
+    let mut places: Vec<f64> = counted
+        .filter_map(|one| one.position.first().copied())
+        .collect();
+    places.sort_by(f64::total_cmp);
+    places
 }
 
 /// A value between two neighbours at which a centre of symmetry turns and a pair is born on a flank, or vanishes there:

@@ -100,6 +100,7 @@ impl Search<'_> {
             .collect();
         let tolerance = self.options.tolerance;
         dips::between_flanks(&solved, tolerance)
+            .or_else(|| dips::between_leaps(&solved, tolerance))
             .or_else(|| dips::beside_centre(&solved, tolerance))
             .or_else(|| dips::on_flanks(&solved, tolerance))
     }

@@ -8,6 +8,7 @@ mod common;
 mod angles;
 mod angular_fluctuations;
 mod coloured_noise;
+mod exchanged_peaks;
 mod forced;
 mod friction_laws;
 mod gallery;

@@ -11,6 +11,7 @@
 
 use std::sync::Arc;
 
+use super::still_noise::where_noise_dies;
 use super::{GeneratorCost, GeneratorMethodOptions, GeneratorSource};
 use crate::cancellation::Cancellation;
 use crate::continuation::measure::{DIVERGENCE, EXPONENT};
@@ -91,9 +92,10 @@ pub(super) fn add_largest_exponent(
         return Ok(());
     };
     let axes = space.dimension();
+    let still = where_noise_dies(system.as_ref(), space);
     let by_axis: Vec<Exponent> = (0..axes)
         .map(|axis| {
-            mean(space, (unknowns, changes), &|states| {
+            mean(space, (unknowns, changes), &still, &|states| {
                 tangent.diagonal(states)[axis]
             })
         })
@@ -141,20 +143,25 @@ fn exponent(
     angles.exponent(source.problem.space())
 }
 
-/// Mean of a function over a density, and what another discretisation changes, twice.
+/// Mean of a function over a density, and what another discretisation changes, twice; besides what some cells add, in
+/// which neither the density nor the function is resolved.
 fn mean(
     space: &CellSpace,
     (unknowns, changes): (&[f64], &[f64]),
+    unresolved: &[usize],
     function: &dyn Fn(&[Lanes]) -> Lanes,
 ) -> Exponent {
     let values = at_nodes(space, function);
     let sum = |weights: &[f64]| -> f64 { weights.iter().zip(&values).map(|(w, q)| w * q).sum() };
     let total: f64 = unknowns.iter().sum();
     let value = sum(unknowns) / total;
+    let part = |&cell: &usize| (unknowns[cell] * (values[cell] - value)).abs();
+    let unresolved: f64 = unresolved.iter().map(part).sum();
     let change = (sum(changes) - value * changes.iter().sum::<f64>()) / total;
     Exponent {
         value,
         error: 2.0 * change.abs()
+            + unresolved / total
             + 1e-12 * values.iter().fold(0.0, |most: f64, q| most.max(q.abs())),
     }
 }

@@ -30,6 +30,7 @@ mod slow_modes;
 mod source;
 mod spectra;
 mod stand;
+mod still_noise;
 mod trail;
 mod truncation;
 #[cfg(test)]
