@@ -291,10 +291,10 @@ fn passage_in_words(family: &Family, passage: usize, fault: PassageFault) -> Str
     let name = passage_name(family, passage);
     let why = match fault {
         PassageFault::Nowhere => {
-            "no cell is inside the region that is waited for: widen the ranges until it is, or use more cells"
+            "no cell is inside the region that is waited for: widen the ranges until it is, or use more cells, unless the region is empty at this value"
         }
         PassageFault::Everywhere => {
-            "all cells are inside the region that is waited for: there is nothing to wait for"
+            "all cells are inside the region that is waited for, or inside the two of its transitions, which touch: there is nothing to wait for"
         }
         PassageFault::Start => {
             "it starts inside the region that is waited for, outside of the cells, or where the steady state has no mass"
@@ -304,10 +304,10 @@ fn passage_in_words(family: &Family, passage: usize, fault: PassageFault) -> Str
         }
         PassageFault::Never => "the region that is waited for is never entered from its start",
         PassageFault::Rounding => {
-            "its mean time is not known to its own size: finer cells know more, unless it is so long beside the times in which states move that rounding decides (from about 1e13 times on)"
+            "its mean time is not known to its own size: finer cells know more, unless it starts on the border, where the time is zero, or part of the paths never end, or it is so long beside the times in which states move that rounding decides (from about 1e13 times on)"
         }
         PassageFault::Unsolved => {
-            "its equations were not solved: use more cells, or give it more memory (`method.memory_limit`)"
+            "its equations were not solved: use more cells, above all where the border lies within a few cells of an end, or give it more memory (`method.memory_limit`), unless part of the paths never end or a formula has no number somewhere in the range"
         }
         PassageFault::Rare => {
             "hardly a path entered the region that is waited for, or came there from the one to start in: give them more time (`method.longest_passage`), or ask the generator"
