@@ -11,6 +11,9 @@ use crate::topology::{FeatureKind, Flank, Verdict};
 /// Flanks at neighbouring points farther apart than this, in ranges, are not one that moved.
 const ONE_FLANK: f64 = 0.1;
 
+/// A density below this share of another is clearly lower.
+const CLEARLY: f64 = 0.99;
+
 /// A value between is no nearer to its neighbours than this share of their distance.
 const NEAREST: f64 = 0.1;
 
@@ -115,10 +118,27 @@ pub(super) fn between_leaps(points: &[(&Point, &Flanks)], tolerance: f64) -> Opt
             let reach = reach(density)[0];
             let [first, second] = [a, b].map(|point| peaks(point, observable));
             let mut moved = first.iter().zip(&second);
-            first.len() == second.len() && moved.any(|(one, other)| (one - other).abs() > reach)
+            // Each place is clearly the higher one at its own value: of two that are alike, rounding decides.
+            let is_lower = |point: &Point, own: f64, other: f64| {
+                let [own, other] = [own, other].map(|at| value_at(point, observable, at));
+                own.zip(other)
+                    .is_some_and(|(own, other)| other < CLEARLY * own)
+            };
+            let leaps = |(&one, &other): (&f64, &f64)| {
+                let is_far = (one - other).abs() > reach;
+                is_far && is_lower(a, one, other) && is_lower(b, other, one)
+            };
+            first.len() == second.len() && moved.any(leaps)
         };
         (is_wide && (0..observables).any(leaps)).then_some(middle)
     })
+}
+
+/// A marginal in the cell that holds a place.
+fn value_at(point: &Point, observable: usize, at: f64) -> Option<f64> {
+    let density = &point.densities[observable].density;
+    let cell = density.axes.first()?.find(at)?;
+    density.values.get(cell).copied()
 }
 
 /// Where the peaks of a marginal are that are counted, ascending.

@@ -6,7 +6,7 @@
 //! slope.
 
 use super::doubt::{BifurcationStatus, Doubt, status_of};
-use super::measure::{DECAY_DISCRIMINANT, EXPONENT, Measure};
+use super::measure::{DECAY_DISCRIMINANT, EXPONENT, Measure, SPECTRAL_CURVATURE, SPECTRAL_RISE};
 use super::spectral_change::SpectralChange;
 use super::{CellCheck, Point, SolveReport, Subject};
 use crate::system::{ExponentMethod, Family, MeasureLevel};
@@ -161,7 +161,7 @@ pub(super) fn crossings(
     let of_level = |asked: &MeasureLevel| {
         let mut found: Vec<LevelCrossing> = Vec::new();
         let limit = limit_of(subject, asked, confidence);
-        for root in roots(&samples(points, asked, limit)) {
+        for root in roots_of(points, asked, limit) {
             let row = row((asked, is_sampled(subject, asked)), &root, tolerance);
             match found.last_mut() {
                 Some(last) if row.value - last.value <= last.error + row.error => merge(last, &row),
@@ -179,7 +179,7 @@ pub(super) fn crossings(
 pub(super) fn next_value(points: &[Point], asked: &[MeasureLevel], tolerance: f64) -> Option<f64> {
     let all = || {
         let each = asked.iter();
-        each.flat_map(|asked| roots(&samples(points, asked, 1.0)))
+        each.flat_map(|asked| roots_of(points, asked, 1.0))
     };
     let mut wide =
         all().filter(|root| root.interpolation > INTERPOLATED * tolerance.max(root.of_measure));
@@ -234,6 +234,27 @@ pub(super) fn over(one: &Measure, level: f64, is_ratio: bool) -> (f64, f64) {
         true => ((one.value / level).ln(), error / one.value),
         false => (one.value - level, error),
     }
+}
+
+/// The roots of a measure less its level. Where the extremum of a spectrum at frequency zero turns, the rise to a
+/// maximum above zero begins, or ends, with a jump, which is no change of its own.
+fn roots_of(points: &[Point], asked: &MeasureLevel, limit: f64) -> Vec<Root> {
+    let mut found = roots(&samples(points, asked, limit));
+    if let Some(of) = asked.measure.strip_prefix(SPECTRAL_RISE.word) {
+        let turn = MeasureLevel {
+            measure: format!("{}{of}", SPECTRAL_CURVATURE.word),
+            level: 0.0,
+        };
+        let curvature = |end: Excess| {
+            let point = points.iter().find(|point| point.value == end.at)?;
+            Some(measure_of(&point.report, &turn)?.value)
+        };
+        found.retain(|root| match root.ends.map(curvature) {
+            [Some(below), Some(above)] => (below < 0.0) == (above < 0.0),
+            _ => true,
+        });
+    }
+    found
 }
 
 /// All roots between neighbouring samples, ascending.

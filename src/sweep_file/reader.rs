@@ -274,9 +274,14 @@ fn value_of(key: &Key, path: &[&str], node: &SpannedValue) -> Result<Plain, Box<
         .at(&blamed.place, format!("this is {}", blamed.value.kind()))
         .allowed(key.allowed());
     if let Some(number) = quoted_number(kind, blamed) {
-        return Err(Box::new(
-            diagnostic.remedy(format!("write the number without quotes: `{number}`")),
-        ));
+        // TOML has no numbers that begin with the point.
+        let unsigned = number.trim_start_matches(['-', '+']);
+        let sign = if number.starts_with('-') { "-" } else { "" };
+        let words = match unsigned.starts_with('.') {
+            true => format!("write a digit before the point: `{sign}0{unsigned}`"),
+            false => format!("write the number without quotes: `{number}`"),
+        };
+        return Err(Box::new(diagnostic.remedy(words)));
     }
     Err(Box::new(
         match (kind, &blamed.value, suggestion(kind, blamed)) {

@@ -242,6 +242,7 @@ fn wrong_kinds_and_ranges() {
         ("points = 3", "points = \"3\"", "write the number without quotes: `3`"),
         ("points = 3", "points = \"three\"", "this is a string"),
         ("kappa = 0.01", "kappa = \"1e-2\"", "write the number without quotes: `1e-2`"),
+        ("kappa = 0.01", "kappa = \".01\"", "write a digit before the point: `0.01`"),
         (x, "x = { from = -5, to = 5, modes = \"8\" }", "write the number without quotes: `8`"),
         ("[cells]", "[figures.style]\nwidth = \"90\"\n[cells]", "write the number without quotes: `90`"),
         ("points = 3", "points = 1", "`sweep.points` cannot be `1`"),

@@ -174,3 +174,43 @@ fn a_highest_frequency_is_found_and_stays() {
         "sides = \"two\"",
     ]);
 }
+
+#[test]
+fn a_maximum_that_leaves_zero_with_a_jump_of_its_rise_is_one_row() {
+    // cos(φ) of a washboard: where the curvature at zero changes its sign, the rise to a maximum above zero begins at
+    // once. The curvature is that of the table.
+    let room = Room::new();
+    let file = r#"
+[system.equations]
+phi = "w - sin(phi)"
+[system.noise]
+phi = "sqrt(2 * 0.3)"
+[system.bounds]
+phi = "periodic"
+[system.parameters]
+w = 0.5
+[sweep]
+parameter = "w"
+from = 0.5
+to = 1.1
+points = 9
+[watch]
+c = "cos(phi)"
+[spectrum]
+of = ["c"]
+[figures]
+draw = []
+"#;
+    room.write("washboard.toml", file);
+    room.solved("sweep washboard.toml --out run --quiet");
+    let rows = room.table("run/bifurcations.csv");
+    let labels = rows.column("label");
+    let spectral: Vec<_> = labels.iter().filter(|one| one.starts_with("SB")).collect();
+    assert_eq!(spectral.len(), 1, "{spectral:?}");
+    assert!(rows.column("status").contains(&"located"));
+    let curvatures = room.table("run/points.csv");
+    let signs: Vec<bool> = (curvatures.0.iter())
+        .map(|row| row.number("spectral_curvature_c") < 0.0)
+        .collect();
+    assert!(signs.first() != signs.last());
+}

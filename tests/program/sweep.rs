@@ -129,7 +129,7 @@ fn ends_that_are_counted_differently_without_a_change_are_named() {
         printed.out
     );
     assert!(room.table("run/bifurcations.csv").changes("x").is_empty());
-    let words = "x, y, xy: the counts at both ends differ, but finer cells show no change between them; the cells of this sweep are too wide";
+    let words = "x, xy: the counts at both ends differ, but finer cells show no change between them; the cells of this sweep are too wide";
     assert!(printed.out.contains(words), "{}", printed.out);
 }
 

@@ -1,7 +1,7 @@
 //! The P-bifurcation diagram of a marginal: its density over the parameter as a heat map, the branches of
 //! its peaks and valleys, and the labelled bifurcations.
 
-use crate::continuation::{LocateOptions, Point, PointStatus, SweepResult};
+use crate::continuation::{Finding, LocateOptions, Point, PointStatus, SweepResult};
 use crate::density::Density;
 use crate::space::Axis;
 use crate::topology::FeatureKind;
@@ -235,8 +235,14 @@ fn entries(
     let missing = |point: &&Point| view::density(point, observable).is_none();
     let blank = || points.iter().filter(missing);
     let several = blank().any(|point| point.report.status == PointStatus::SeveralClasses);
+    let rests = |point: &Point| {
+        let mut findings = point.report.findings.iter();
+        findings.any(|one| matches!(one, Finding::PointMass { .. }))
+    };
     let words = if several {
         "no unique steady state"
+    } else if blank().all(rests) {
+        "point mass"
     } else {
         "no steady state"
     };
