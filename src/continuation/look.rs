@@ -183,3 +183,46 @@ pub(super) fn with_rows(labels: Vec<Label>, change: impl FnOnce(&mut Vec<Located
         .map(|row| Label::Bifurcation(Box::new(row)));
     label::number(others.into_iter().chain(rows).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn peaks(peaks: usize) -> Signature {
+        Signature::from([peaks, 0, 0, 0, 0, 0])
+    }
+
+    fn row(value: f64, [before, after]: [usize; 2]) -> Located {
+        Located {
+            label: String::new(),
+            value,
+            error: 1e-3,
+            lower: value - 1e-3,
+            upper: value + 1e-3,
+            observable: Observable::Marginal(0),
+            before: peaks(before),
+            after: peaks(after),
+            zero: None,
+            is_several: false,
+            doubts: vec![Doubt::Jump],
+        }
+    }
+
+    #[test]
+    fn a_look_that_sees_nothing_leaves_a_change_that_is_counted_beside_it() {
+        let look = CloserLook {
+            observable: Observable::Marginal(0),
+            stretch: [0.4, 0.6],
+            ends: [peaks(2), peaks(2)],
+            rows: Vec::new(),
+        };
+        // Four peaks become two below the stretch, though an indicator has its zero inside.
+        let mut rows = vec![row(0.5, [4, 2])];
+        assert!(!look.replace(&mut rows));
+        assert_eq!(rows.len(), 1);
+        // What comes and goes inside is none of the density's.
+        let mut rows = vec![row(0.45, [2, 3]), row(0.55, [3, 2])];
+        assert!(look.replace(&mut rows));
+        assert!(rows.is_empty());
+    }
+}

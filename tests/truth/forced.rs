@@ -190,3 +190,32 @@ fn moments_at_phases_are_off_by_no_more_than_few_harmonics_say() {
         }
     }
 }
+
+#[test]
+fn an_amplitude_has_the_error_of_the_ends_of_the_range() {
+    // x' = -k x + A cos(w t): the mean moves with A/√(k² + w²), about which the density has the deviation √(D/k). Three
+    // to four and a half deviations beyond it what is cut off shifts the mean by far more than cells do.
+    let (k, w, d, a) = (1.0_f64, 0.5_f64, 0.25_f64, 0.4_f64);
+    let exact = a / k.hypot(w);
+    for reach in [3.0, 3.7, 4.5] {
+        let end = exact + reach * (d / k).sqrt();
+        let text = format!(
+            "[system.equations]\nx = \"-k x + A cos(w t)\"\n[system.noise]\nx = \"sqrt(2 D)\"\n\
+             [system.parameters]\nk = {k}\nw = {w}\nD = {d}\nA = {a}\n\
+             [sweep]\nparameter = \"A\"\nfrom = 0.1\nto = {a}\npoints = 2\n\
+             [cells]\nx = {{ from = -{end}, to = {end}, count = 80 }}\n"
+        );
+        let (_, solution) = solved(&text, "", None);
+        for (name, exact) in [
+            ("amplitude_x", exact),
+            ("amplification_x", (exact / a).powi(2)),
+        ] {
+            let (value, error) = measure(&solution, name);
+            println!("{reach} {name}: {value} ± {error:.1e}, exact {exact}");
+            assert!(
+                (value - exact).abs() <= error,
+                "{reach} {name}: {value} ± {error:e}"
+            );
+        }
+    }
+}

@@ -8,7 +8,7 @@ use pbif::method::{GeneratorMethodOptions, GeneratorSource};
 use pbif::sweep_file::{Sweep, SweepFile};
 
 use crate::common::room::Room;
-use crate::common::sweeps::{rows, swept};
+use crate::common::sweeps::{measure, rows, solved, swept};
 
 /// Growth with a rate that fluctuates, beside a state that relaxes: x has the gamma density x^(a/D - 1) exp(-x/D),
 /// whose mean is a and whose variance is a D. No end is given: no path crosses x = 0.
@@ -176,4 +176,40 @@ fn a_share_ends_at_one_where_its_noise_dies() {
     let off = (row.value - 0.5f64.sqrt()).abs();
     assert!(off <= row.error && row.error < 1e-3, "{row:?}");
     assert_eq!(row.status(), BifurcationStatus::Located);
+}
+
+#[test]
+fn the_exponent_of_a_square_root_process_is_within_its_error() {
+    // x' = 1 - x + s √x ξ (Itô) has a gamma density of the shape α = 2/s². Deviations grow at the mean of f' - b'²/2 =
+    // -1 - s²/(8 x), and 1/x has the mean α/(α - 1): near the end, which cells do not resolve where α is small.
+    let text = r#"
+[system.equations]
+x = "1 - x"
+[system.noise]
+x = "s sqrt(x)"
+interpretation = "ito"
+[system.parameters]
+s = 0.8
+[sweep]
+parameter = "s"
+from = 0.6
+to = 1.2
+points = 2
+[cells]
+x = { from = 0, to = 12, count = 120 }
+[exponent]
+kind = "largest"
+"#;
+    for s in [0.6_f64, 0.75, 0.9, 1.05, 1.2] {
+        let shape = 2.0 / (s * s);
+        let exact = -1.0 - s * s / 8.0 * shape / (shape - 1.0);
+        let (_, solution) = solved(text, "", Some(s));
+        let (value, error) = measure(&solution, "exponent");
+        println!("{s}: {value} ± {error:.1e}, exact {exact}");
+        assert!(
+            (value - exact).abs() <= error,
+            "{s}: {value} ± {error:e}, exact {exact}"
+        );
+        assert!(error < 0.15 * exact.abs(), "{s}: {error:e}");
+    }
 }

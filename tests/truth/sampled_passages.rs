@@ -11,6 +11,7 @@ use pbif::space::{Axis, CellSpace};
 use pbif::system::regions;
 
 use crate::common::steady::model;
+use crate::common::sweeps::{measure, solved};
 use crate::passages::brownian_survival;
 
 /// Axes with their drifts, or with the amplitudes of their noises.
@@ -227,4 +228,39 @@ fn a_well_is_left_from_a_state_and_from_the_density_in_it() {
         sum / mass,
         0.02,
     );
+}
+
+#[test]
+fn a_rate_is_that_of_the_tail_where_exits_become_rarer_and_more_frequent_again() {
+    // A rotation brings paths to the corner by turns: the first halves of the exits agree by chance. The
+    // generator knows the rate to a thousandth.
+    let text = r#"
+[system.equations]
+x = "-x - 2 y"
+y = "-y + 2 x"
+[system.noise]
+x = "s"
+y = "s"
+[system.parameters]
+s = 0.8
+[sweep]
+parameter = "s"
+from = 0.7
+to = 0.9
+points = 2
+[cells]
+x = { from = -2.6, to = 2.6, count = 60 }
+y = { from = -2.6, to = 2.6, count = 60 }
+[passage]
+l = { start = { x = 0, y = 0 }, until = "x > 0.5 or y > 0.7" }
+"#;
+    let rate = |words: &str| measure(&solved(text, words, Some(0.9)).1, "l_rate");
+    let (exact, rest) = rate("");
+    for seed in [1, 2] {
+        let words = format!("method.kind=monte-carlo method.passages=32768 method.seed={seed}");
+        let (value, error) = rate(&words);
+        let off = (value - exact).abs();
+        println!("{value} ± {error:.1e}, generator {exact} ± {rest:.1e}");
+        assert!(off < 4.0 * error + rest && error < 0.05 * value, "{seed}");
+    }
 }
