@@ -17,6 +17,7 @@ use crate::figure::canvas::style::{
     BIFURCATION, Colour, D_BIFURCATION, GREY, INK, MARGIN, PAPER, Stroke,
 };
 use crate::figure::canvas::symbols;
+use crate::figure::parts::caption;
 use crate::figure::parts::crossed::Crossed;
 use crate::figure::parts::curve_line::{BAND, DASHES, draw_points, into_box};
 use crate::figure::parts::level_lines::LevelLines;
@@ -218,7 +219,11 @@ impl Scene<'_> {
         text += &self.stability.caption();
         text += &self.levels.caption();
         text += &self.crossed.caption();
-        text + "\n"
+        let [_, second] = self.plane.sides();
+        format!(
+            "{text} {}\n",
+            caption::of_plane(self.family, &second.parameter)
+        )
     }
 
     /// What the caption says of the first curve and of points of codimension two.
@@ -241,13 +246,13 @@ impl Scene<'_> {
         let errors = curve.points.iter().map(|point| point.error);
         let largest = errors.fold(0.0, f64::max);
         let mut text = format!(
-            "Where the {} of the density of {} is zero, in the plane of {} and {}, followed from {} at {} = {}.",
+            "Where the {} of the steady-state density {} is zero, in the plane of {} and {}, followed from {} at {} = {}.",
             curve.kind.name(),
-            curve.observable.name(self.family),
-            first.parameter,
-            second.parameter,
+            caption::density(self.family, curve.observable),
+            caption::parameter_named(self.family, &first.parameter),
+            caption::parameter_named(self.family, &second.parameter),
             self.row.label,
-            first.parameter,
+            caption::parameter_named(self.family, &first.parameter),
             symbols::rounded(self.row.value),
         );
         for end in &curve.ends {

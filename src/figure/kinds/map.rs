@@ -16,6 +16,7 @@ use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape, small};
 use crate::figure::canvas::style::{BLANK, Colour, INK, MARGIN, PAPER, Stroke, TICK_TEXT};
 use crate::figure::canvas::symbols;
+use crate::figure::parts::caption;
 use crate::figure::parts::crossed::Crossed;
 use crate::figure::parts::curve_line::draw_points;
 use crate::figure::parts::inset;
@@ -286,20 +287,21 @@ impl Scene<'_> {
     fn caption(&self, words: &[String]) -> String {
         let [first, second] = self.map.plane.sides();
         let mut text = format!(
-            "Regimes of the density of {} in the plane of {} and {}: {}.",
-            self.map.subject.observables[self.index].name(self.family),
-            first.parameter,
-            second.parameter,
+            "Regimes of the steady-state density {} in the plane of {} and {}: {}.",
+            caption::density(self.family, self.map.subject.observables[self.index]),
+            caption::parameter_named(self.family, &first.parameter),
+            caption::parameter_named(self.family, &second.parameter),
             words.join(", "),
         );
         for curve in &self.curves {
             let ends = curve.ends.iter().map(|end| end.reason.words(&curve.plane));
-            let ends: Vec<String> = ends.collect();
+            let mut ends: Vec<String> = ends.collect();
+            ends.dedup();
             text += &format!(
-                " On a line the {} is zero ({} points; {}).",
+                " On a line the {} is zero ({} points; it ends at: {}).",
                 curve.kind.name(),
                 curve.points.len(),
-                ends.join("; "),
+                ends.join(", "),
             );
         }
         text += &self.stability.caption();
@@ -308,7 +310,10 @@ impl Scene<'_> {
         if self.map.interrupted {
             text += " The map was interrupted before it was complete.";
         }
-        text + "\n"
+        format!(
+            "{text} {}\n",
+            caption::of_plane(self.family, &second.parameter)
+        )
     }
 
     /// The curves, and the words of the regions.

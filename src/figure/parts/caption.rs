@@ -99,10 +99,27 @@ pub(crate) fn to_digits_of_error(value: f64, error: f64) -> String {
 
 /// The system with its parameters.
 pub(crate) fn system_of(family: &Family) -> String {
+    system_in(family, "")
+}
+
+/// What ends the caption of a figure of a plane: the system, with the parameters that neither side of the plane
+/// changes, and what computed it.
+pub(crate) fn of_plane(family: &Family, second: &str) -> String {
+    format!("{} {}", system_in(family, second), version())
+}
+
+/// A parameter as figures have it, in plain letters.
+pub(crate) fn parameter_named(family: &Family, name: &str) -> String {
+    in_letters(&names::symbol_of(family, name))
+}
+
+/// The system with its parameters but for one that is swept besides the family's own.
+fn system_in(family: &Family, second: &str) -> String {
     let model = family.model();
     let equations = model.equations.join("; ");
     let fixed: Vec<String> = family
         .fixed()
+        .filter(|(name, _)| *name != second)
         .map(|(name, value)| {
             let symbol = in_letters(&names::symbol_of(family, name));
             format!("{symbol} = {}", number(value))
