@@ -101,37 +101,38 @@ pub(super) fn between_flanks(points: &[(&Point, &Flanks)], tolerance: f64) -> Op
 /// The middle of two neighbours that count the same peaks of a marginal, one of which has moved farther than a peak
 /// moves: one may have been born between them, and the other have vanished, where no value was solved.
 pub(super) fn between_leaps(points: &[(&Point, &Flanks)], tolerance: f64) -> Option<f64> {
-    let observables = points.first().map_or(0, |point| point.1.len());
-    let mut pairs = points.windows(2);
-    pairs.find_map(|pair| {
-        let (a, b) = (pair[0].0, pair[1].0);
+    let mut pairs = points.windows(2).map(|pair| (pair[0].0, pair[1].0));
+    pairs.find_map(|(a, b)| {
         let middle = 0.5 * (a.value + b.value);
         let is_wide = b.value - a.value > tolerance && a.value < middle && middle < b.value;
-        let leaps = |observable: usize| {
-            let density = &a.densities[observable];
-            // Noise moves peaks on plateaus, and where a turn begins, none is before another.
-            let is_exact = density.variants.second_scheme().is_some();
-            let is_line = density.density.axes.len() == 1 && !density.density.axes[0].is_closed();
-            if !(is_exact && is_line) {
-                return false;
-            }
-            let reach = reach(density)[0];
-            let [first, second] = [a, b].map(|point| peaks(point, observable));
-            let mut moved = first.iter().zip(&second);
-            // Each place is clearly the higher one at its own value: of two that are alike, rounding decides.
-            let is_lower = |point: &Point, own: f64, other: f64| {
-                let [own, other] = [own, other].map(|at| value_at(point, observable, at));
-                own.zip(other)
-                    .is_some_and(|(own, other)| other < CLEARLY * own)
-            };
-            let leaps = |(&one, &other): (&f64, &f64)| {
-                let is_far = (one - other).abs() > reach;
-                is_far && is_lower(a, one, other) && is_lower(b, other, one)
-            };
-            first.len() == second.len() && moved.any(leaps)
-        };
-        (is_wide && (0..observables).any(leaps)).then_some(middle)
+        let mut observables = 0..a.densities.len();
+        (is_wide && observables.any(|observable| leaps(a, b, observable))).then_some(middle)
     })
+}
+
+/// Whether a peak of a marginal leaps between two values.
+fn leaps(a: &Point, b: &Point, observable: usize) -> bool {
+    let density = &a.densities[observable];
+    let axes = &density.density.axes;
+    // Noise moves peaks on plateaus, and where a turn begins, none is before another.
+    let is_exact = density.variants.second_scheme().is_some();
+    if !is_exact || axes.len() != 1 || axes[0].is_closed() {
+        return false;
+    }
+    let reach = reach(density)[0];
+    // Each place is clearly the higher one at its own value: of two that are alike, rounding decides.
+    let is_lower = |point: &Point, own: f64, other: f64| {
+        let [own, other] = [own, other].map(|at| value_at(point, observable, at));
+        let both = own.zip(other);
+        both.is_some_and(|(own, other)| other < CLEARLY * own)
+    };
+    let [first, second] = [a, b].map(|point| peaks(point, observable));
+    let mut moved = first.iter().zip(&second);
+    first.len() == second.len()
+        && moved.any(|(&one, &other)| {
+            let is_far = (one - other).abs() > reach;
+            is_far && is_lower(a, one, other) && is_lower(b, other, one)
+        })
 }
 
 /// A marginal in the cell that holds a place.

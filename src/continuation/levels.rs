@@ -240,9 +240,10 @@ pub(super) fn over(one: &Measure, level: f64, is_ratio: bool) -> (f64, f64) {
 /// maximum above zero begins, or ends, with a jump, which is no change of its own.
 fn roots_of(points: &[Point], asked: &MeasureLevel, limit: f64) -> Vec<Root> {
     let mut found = roots(&samples(points, asked, limit));
-    if let Some(of) = asked.measure.strip_prefix(SPECTRAL_RISE.word) {
+    let rise = asked.measure.strip_prefix(SPECTRAL_RISE.word);
+    if let Some(of) = rise.and_then(|rest| rest.strip_prefix('_')) {
         let turn = MeasureLevel {
-            measure: format!("{}{of}", SPECTRAL_CURVATURE.word),
+            measure: SPECTRAL_CURVATURE.name(of),
             level: 0.0,
         };
         let curvature = |end: Excess| {

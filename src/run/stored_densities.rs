@@ -97,8 +97,10 @@ impl StoredDensities {
         let with_centre = self.observed.iter().any(|one| one.centre.is_some());
         let symmetric = system.as_deref().filter(|_| with_centre);
         // The centre that is stored is that of the value that was solved first, and others need not have it.
-        let over_a_period = symmetric.and_then(|system| symmetry_over_a_period(system, &self.ends));
         let at_any_phase = symmetric.and_then(|system| proved_symmetry(system, &self.ends));
+        let forced = symmetric.filter(|system| system.facts().phase.is_some());
+        let over_a_period =
+            (at_any_phase.clone()).or_else(|| symmetry_over_a_period(forced?, &self.ends));
         // At one phase a reflection does not serve that needs half a period; axes there are those of the state.
         let reflects = |observable: Observable| {
             let axes = observable.axes();
