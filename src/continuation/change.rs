@@ -180,7 +180,10 @@ fn between(
     }
     for event in events {
         let course = decisive(points, detector, observable, (left, right), &event);
-        found.extend(course.map(|course| change(Some(course), Some(event))));
+        // What no indicator tells of has a row of its own: else the next one would have its change of the count too.
+        if course.is_some() || event.indicator.is_none() {
+            found.push(change(course, Some(event)));
+        }
     }
     if found.is_empty() {
         found.push(change(None, None));

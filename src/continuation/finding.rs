@@ -86,6 +86,14 @@ pub enum Finding {
         /// Where the end is.
         at: f64,
     },
+    /// The density falls along an axis as so small a power of the distance that its standard deviation rests on what
+    /// is beyond the range, or does not exist.
+    HeavyTail {
+        /// The axis.
+        axis: usize,
+        /// The power with which the density falls at the end of the range.
+        power: f64,
+    },
     /// A watched density is negative somewhere: it has wiggles that the cells do not resolve.
     NegativeDensity {
         /// Σ |min(mass, 0)| of the worst of the watched densities.

@@ -10,6 +10,7 @@ use super::doubt::{CheckedBy, Doubt};
 use super::root::Root;
 use super::span::Span;
 use super::{CellCheck, Session, SourceError};
+use crate::density::LEAK_ALLOWANCE;
 use crate::topology::{Detector, IndicatorKind, Signature};
 
 /// Error of a value on finer cells over its distance to the value on those that it checks, see above; what order one
@@ -201,10 +202,12 @@ pub(super) fn solve(
     })
 }
 
-/// How far the mass that leaves Ω moves a value: the indicator at the zero, when nothing leaves, over its slope.
+/// How far the mass that leaves Ω may move a value, from the indicator at the zero, when nothing leaves, over its slope.
 pub(super) fn leak(seen: Seen, checked: &Checked<'_>) -> Option<Result<f64, Doubt>> {
     match seen {
-        Seen::Value(indicator, _) => Some(Ok((indicator / checked.root.slope).abs())),
+        Seen::Value(indicator, _) => {
+            Some(Ok(LEAK_ALLOWANCE * (indicator / checked.root.slope).abs()))
+        }
         Seen::Absent => Some(Err(Doubt::NotBetweenClosedEnds)),
         Seen::Failed(reason) => Some(Err(Doubt::CheckFailed(CheckedBy::ClosedEnds, reason))),
         Seen::Unknown => None,

@@ -150,6 +150,10 @@ pub const NEGLIGIBLE: f64 = 1e-7;
 /// along level lines.
 pub(crate) const NEGLIGIBLE_OF_QUANTITIES: f64 = 1e-5;
 
+/// What leaves a range does not come back where it leaves from: so many times what the mass would change, or move, by if
+/// it did is allowed for.
+pub(crate) const LEAK_ALLOWANCE: f64 = 2.0;
+
 /// What the ends of the ranges may have changed of a density.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -3,7 +3,7 @@
 
 use super::Problem;
 use super::measures::{Cells, broken, derive};
-use super::tails;
+use super::tails::{self, Beyond};
 use crate::continuation::measure::{
     DEVIATION, EDGE_MASS, ESCAPE_RATE, MEAN, NEGATIVE_MASS, NUMERICAL_DIFFUSION,
 };
@@ -40,8 +40,8 @@ pub(super) struct Reporter<'a> {
     problem: &'a Problem,
     /// What is known so far.
     pub(super) report: SolveReport,
-    /// Mass that may lie beyond the ends of each axis.
-    beyond: Vec<[f64; 2]>,
+    /// What may lie beyond the ends of each axis.
+    beyond: Vec<[Beyond; 2]>,
     /// Share of the mass that leaves within one relaxation time.
     leak: f64,
 }
@@ -70,7 +70,7 @@ impl<'a> Reporter<'a> {
     /// one relaxation time, which is missing inside.
     pub(super) fn missing(&self) -> Missing {
         Missing {
-            beyond: self.beyond.iter().flatten().sum(),
+            beyond: self.beyond.iter().flatten().map(|end| end.mass).sum(),
             leak: self.leak,
         }
     }
@@ -89,7 +89,7 @@ impl<'a> Reporter<'a> {
 
     /// Means and standard deviations of the axes, of the quantities that are averaged, and of axes at phases of a
     /// forcing; those of angles and of a phase, which depend on where the turn is cut, are left out. What may lie
-    /// beyond the ends of the ranges adds to their errors.
+    /// beyond the ends of the ranges adds to their errors; where nothing bounds that, there is none.
     pub(super) fn moments(&mut self, estimated: &[EstimatedMoments]) {
         let ends = tails::beyond(self.space(), (&self.beyond, self.leak), estimated);
         let family = self.problem.family();
@@ -118,7 +118,7 @@ impl<'a> Reporter<'a> {
             ];
             for (kind, value, error) in numbers {
                 self.report.put(Measure {
-                    error,
+                    error: error.filter(|error| error.is_finite()),
                     ..kind.measure(name, value)
                 });
             }
@@ -156,6 +156,10 @@ impl<'a> Reporter<'a> {
             .collect();
         for (axis, ends) in tails.into_iter().enumerate() {
             let mass = ends[0].outer + ends[1].outer;
+            let powers = ends.iter().filter_map(|end| end.beyond.heavy());
+            if let Some(power) = powers.min_by(f64::total_cmp) {
+                self.tell(Finding::HeavyTail { axis, power });
+            }
             self.report
                 .add(&EDGE_MASS, self.problem.family().axis(axis), mass);
             if mass > EDGE_MASS_LIMIT {

@@ -99,6 +99,13 @@ fn cells_in_words(family: &Family, finding: &Finding) -> Option<String> {
                 100.0 * mass
             )
         }
+        Finding::HeavyTail { axis, power } => {
+            let axis = family.axis(axis);
+            format!(
+                "the density falls along {axis} like the power {power:.1} of the distance where its range ends: the \
+                 standard deviation of {axis} rests on what is beyond, or does not exist, and has no error"
+            )
+        }
         Finding::NegativeDensity { mass } => format!(
             "{:.2} % of the mass of a watched density is negative: it has wiggles that the cells do not resolve; use more cells",
             100.0 * mass

@@ -1,7 +1,8 @@
-//! Two changes between two values that a sweep solves, which count the same peaks: one is born, and another vanishes.
+//! Two changes between two values that a sweep solves: a peak is born while another vanishes, so that as many are
+//! counted, or a peak vanishes while a crater closes.
 
 use crate::common::sweeps::{rows, swept};
-use pbif::continuation::BifurcationStatus;
+use pbif::continuation::{BifurcationStatus, Located};
 
 /// exp(-U/T) of two axes that mix, integrated over x: the density of y but for a factor, by Simpson's rule.
 fn density_of_y(tilt: f64, y: f64) -> f64 {
@@ -82,4 +83,51 @@ joint = []
         assert!(row.status() == BifurcationStatus::Located);
         assert!((row.value - exact).abs() <= row.error + 1e-6, "{exact}");
     }
+}
+
+#[test]
+#[ignore = "at_length: half a minute for closer looks on up to four times as many cells"]
+fn a_crater_that_closes_does_not_take_a_peak_with_it() {
+    // Down the gradient of U = (x² + y² - 1)² + k x + 0.3 (x² - y²) and around along its level lines: exp(-U/T).
+    let text = r#"
+[system.equations]
+x = "-4 x (x^2+y^2-1) - k - 0.6 x + w (4 y (x^2+y^2-1) - 0.6 y)"
+y = "-4 y (x^2+y^2-1) + 0.6 y - w (4 x (x^2+y^2-1) + k + 0.6 x)"
+[system.noise]
+x = "sqrt(2 T)"
+y = "sqrt(2 T)"
+[system.parameters]
+k = 0.1
+T = 0.3
+w = 0.5
+[sweep]
+parameter = "k"
+from = 1.1333333333
+to = 1.7
+points = 3
+[cells]
+x = { from = -2.3, to = 2.3, count = 68 }
+y = { from = -2.5, to = 2.4, count = 68 }
+[detect]
+marginals = []
+"#;
+    let (_, result) = swept(text, "");
+    let found = rows(&result, "xy");
+    // On y = 0 the maximum of U meets its saddle where 12 x² = 3.4.
+    let x = (3.4_f64 / 12.0).sqrt();
+    let exact = x * (3.4 - 4.0 * x * x);
+    let closing = found.first().expect("the crater closes");
+    assert_eq!(closing.status(), BifurcationStatus::Located);
+    assert!(
+        (closing.value - exact).abs() < closing.error,
+        "{} ± {}",
+        closing.value,
+        closing.error
+    );
+    // Two peaks are left until they meet at k = 1.287.
+    let peaks = |row: &Located| (row.before.peaks, row.after.peaks);
+    assert_eq!(
+        found.iter().map(|row| peaks(row)).collect::<Vec<_>>(),
+        [(2, 2), (2, 1)]
+    );
 }

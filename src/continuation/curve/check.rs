@@ -10,6 +10,7 @@ use super::{CurvePoint, CurveWork, Task};
 use crate::continuation::grid::share_of_distance;
 use crate::continuation::locate::QUIET;
 use crate::continuation::{CheckedBy, DensitySource, Doubt, ErrorParts, SourceError, Want};
+use crate::density::LEAK_ALLOWANCE;
 use crate::topology::two_sided_limit;
 
 /// A finer curve farther than this from the coarser one is not the same, in sides of the box.
@@ -251,7 +252,7 @@ fn between(checks: &[Check], nodes: &[WalkPoint], index: usize, of_distance: f64
     Interpolated {
         shift: pair.map_or(0.0, |(a, b)| (1.0 - share) * a + share * b),
         grid: pair.map(|_| of_distance * largest + from_neighbours),
-        leak: leaks[0].max(leaks[1]),
+        leak: LEAK_ALLOWANCE * leaks[0].max(leaks[1]),
         is_own: below.index == index,
         doubt: nearest.doubt(),
     }

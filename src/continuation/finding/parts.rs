@@ -70,6 +70,7 @@ stored! {
     along {
         Absorbed "absorbed" (at, exponent);
         NaturalEnd "natural-end" (mass, at);
+        HeavyTail "heavy-tail" (power);
         WideCells "wide-cells" (peclet);
         BalanceBroken "balance-broken" (relative, error);
         UnresolvedSeries "unresolved-series" (change);

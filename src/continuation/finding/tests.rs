@@ -50,7 +50,11 @@ pub(crate) fn every_finding() -> Vec<Finding> {
             mass: 0.02,
             at: 0.0,
         }),
-        F::NaturalEnd { .. } => Some(F::NegativeDensity { mass: 0.004 }),
+        F::NaturalEnd { .. } => Some(F::HeavyTail {
+            axis: 1,
+            power: 2.5,
+        }),
+        F::HeavyTail { .. } => Some(F::NegativeDensity { mass: 0.004 }),
         F::NegativeDensity { .. } => Some(F::NegativeCells {
             mass: 0.08,
             watched: 3e-8,

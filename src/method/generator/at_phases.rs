@@ -2,7 +2,8 @@
 
 use super::unknowns::by_schemes;
 use crate::density::{EstimatedMoments, Moments, phase_factors, times};
-use crate::method::{MethodError, tails};
+use crate::method::MethodError;
+use crate::method::tails::{self, Beyond};
 use crate::space::CellSpace;
 use crate::system::Family;
 
@@ -62,7 +63,7 @@ pub(super) fn moments_at_phases(
         let plain = change(of(over.unknowns, over.second, &factors[0]));
         let masses = slice.of(&times(over.masses, &factors[0]));
         let beyond = tails::tails(&slice.space, &masses, &closed);
-        let beyond: Vec<[f64; 2]> = beyond
+        let beyond: Vec<[Beyond; 2]> = beyond
             .iter()
             .map(|ends| ends.map(|end| end.beyond))
             .collect();

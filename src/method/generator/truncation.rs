@@ -6,7 +6,7 @@
 //! holds too little, and the others too much.
 
 use super::session::{GeneratorSession, PointSolve};
-use crate::density::{EstimatedDensity, Truncation};
+use crate::density::{EstimatedDensity, LEAK_ALLOWANCE, Truncation};
 use crate::generator::cell_masses;
 use crate::method::MethodError;
 use crate::method::report::Missing;
@@ -22,9 +22,6 @@ const LAST_TERM: f64 = 0.001;
 
 /// Largest ratio of terms that is believed.
 const LARGEST_RATIO: f64 = 0.8;
-
-/// What leaves does not come back where it leaves from: twice its effect is allowed for.
-const ALLOWED: f64 = 2.0;
 
 impl GeneratorSession {
     /// Adds to densities of solved masses what the ends may have changed.
@@ -42,7 +39,7 @@ impl GeneratorSession {
         let least = stated.fold(f64::INFINITY, f64::min);
         // Where less leaves than schemes differ by, its share will do.
         if missing.leak <= least {
-            let share = missing.beyond + ALLOWED * missing.leak;
+            let share = missing.beyond + LEAK_ALLOWANCE * missing.leak;
             densities
                 .iter_mut()
                 .for_each(|one| one.truncation.share = share);
@@ -54,8 +51,11 @@ impl GeneratorSession {
         let changes = maps.changes(&self.source.problem, &difference)?;
         for (one, change) in densities.iter_mut().zip(changes) {
             one.truncation = Truncation {
-                share: missing.beyond + ALLOWED * moved,
-                change: change.iter().map(|change| ALLOWED * change).collect(),
+                share: missing.beyond + LEAK_ALLOWANCE * moved,
+                change: change
+                    .iter()
+                    .map(|change| LEAK_ALLOWANCE * change)
+                    .collect(),
             };
         }
         Ok(())
