@@ -202,7 +202,8 @@ pub(super) fn solve(
     })
 }
 
-/// How far the mass that leaves Ω may move a value, from the indicator at the zero, when nothing leaves, over its slope.
+/// How far the mass that leaves Ω may move a value, from the indicator at the zero when nothing leaves, over its
+/// slope.
 pub(super) fn leak(seen: Seen, checked: &Checked<'_>) -> Option<Result<f64, Doubt>> {
     match seen {
         Seen::Value(indicator, _) => {

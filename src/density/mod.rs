@@ -150,8 +150,8 @@ pub const NEGLIGIBLE: f64 = 1e-7;
 /// along level lines.
 pub(crate) const NEGLIGIBLE_OF_QUANTITIES: f64 = 1e-5;
 
-/// What leaves a range does not come back where it leaves from: so many times what the mass would change, or move, by if
-/// it did is allowed for.
+/// What leaves a range does not come back where it leaves from: so many times what the mass would change by, or a value
+/// move by, if it did is allowed for.
 pub(crate) const LEAK_ALLOWANCE: f64 = 2.0;
 
 /// What the ends of the ranges may have changed of a density.

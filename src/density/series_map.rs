@@ -14,13 +14,13 @@ pub(crate) const BINS_OF_A_TURN: usize = 120;
 const LEFT_OUT: usize = 2;
 
 /// The axis along which a density is laid out: the axis itself, or bins of equal width over an axis of modes, the same
-/// whatever their number.
+/// whatever their number but for finer axes, on which what is read off bins is checked too.
 pub(crate) fn layout_axis(axis: &Axis) -> Axis {
     let (from, to) = axis.series_range();
     if axis.is_modes() && axis.is_closed() {
-        Axis::turn(from, to, BINS_OF_A_TURN).unwrap_or_else(|_| axis.clone())
+        Axis::turn(from, to, axis.laid_out(BINS_OF_A_TURN)).unwrap_or_else(|_| axis.clone())
     } else if axis.is_modes() {
-        Axis::uniform(from, to, BINS).unwrap_or_else(|_| axis.clone())
+        Axis::uniform(from, to, axis.laid_out(BINS)).unwrap_or_else(|_| axis.clone())
     } else {
         axis.clone()
     }

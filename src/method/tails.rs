@@ -178,8 +178,8 @@ pub(super) struct Ends {
     axes: Vec<[(Beyond, f64); 2]>,
 }
 
-/// What lies beyond the ends, from what is found there, the share that leaves within one relaxation time, and the moments of the
-/// axes, which come first among all.
+/// What lies beyond the ends, from what is found there, the share that leaves within one relaxation time, and the
+/// moments of the axes, which come first among all.
 pub(super) fn beyond(
     space: &CellSpace,
     (found, leak): (&[[Beyond; 2]], f64),

@@ -22,6 +22,9 @@ pub struct Axis {
     nodes: Vec<f64>,
     pieces: Vec<Piece>,
     series: Option<Series>,
+    /// Bins over which a series is laid out, over their usual number.
+    #[cfg_attr(feature = "serde", serde(default = "once"))]
+    layout: f64,
     /// Whether its ends are one place.
     closes: bool,
 }
@@ -29,6 +32,11 @@ pub struct Axis {
 /// A finer axis has a mode more for each so many: one alone shows little of an error that falls as a power of their
 /// number.
 const MODES_A_FINER_MODE: usize = 4;
+
+/// The usual number, as a factor.
+fn once() -> f64 {
+    1.0
+}
 
 impl Axis {
     /// Whether every cell has its edges, its node and, but for modes, its piece: what was read from a file may not.
@@ -170,19 +178,22 @@ impl Axis {
             nodes,
             pieces,
             series: None,
+            layout: once(),
             closes: false,
         }
     }
 
     /// The same axis with about `factor` times as many cells (fewer below 1, at least two a stretch between graded
     /// points), graded alike: faces stay on the points it is graded toward, and an even number of cells stays even, so
-    /// that a face stays in the middle. An axis of modes gets a quarter more of them, at least one (none below 1).
+    /// that a face stays in the middle. An axis of modes gets a quarter more of them, at least one (none below 1), and
+    /// `factor` times as many bins over which its series is laid out.
     pub(crate) fn refined(&self, factor: f64) -> Self {
         if self.is_modes() {
             let more = (self.mode_number() / MODES_A_FINER_MODE).max(1);
             let count = self.mode_number() + if factor > 1.0 { more } else { 0 };
             let finer = self.with_modes(count.min(self.most_modes()));
-            return finer.unwrap_or_else(|_| self.clone());
+            let layout = self.layout * factor.max(1.0);
+            return finer.map_or_else(|_| self.clone(), |axis| Self { layout, ..axis });
         }
         let finer = |cells: usize| {
             let odd = cells % 2;

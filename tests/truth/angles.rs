@@ -1,5 +1,7 @@
 //! Angles through sweep files: changes of a density on a circle at exact values, wherever the seam is.
 
+use std::f64::consts::TAU;
+
 use crate::common::sweeps::{rows, solved, swept};
 use pbif::continuation::{BifurcationStatus, Finding};
 
@@ -118,4 +120,71 @@ fn a_theta_neuron_has_its_exact_density_and_no_doubt_in_its_harmonics() {
                 .sum::<f64>();
         assert!(apart < 1e-6, "{current}: {apart:e}");
     }
+}
+
+/// Two rotors in a field, coupled by the second harmonic: exp(-2 U), U = -cos a - cos b - k cos(2 a - 2 b).
+const TWO_ROTORS: &str = r#"
+[system.equations]
+a = "-sin(a) - 2 k sin(2 a - 2 b)"
+b = "-sin(b) + 2 k sin(2 a - 2 b)"
+[system.noise]
+a = "1"
+b = "1"
+[system.bounds]
+a = "periodic"
+b = "periodic"
+[sweep]
+parameter = "k"
+from = 0.36
+to = 0.54
+points = 4
+[detect]
+marginals = []
+"#;
+
+#[test]
+fn as_many_harmonics_of_two_angles_are_chosen_as_their_density_needs() {
+    let (sweep, result) = swept(TWO_ROTORS, "");
+    // A constant, and two functions a harmonic.
+    let functions = sweep.problem.space().axes()[0].count();
+    assert!((33..=49).contains(&functions), "{functions}");
+    // On a = -b, where 2 sin a + 4 k sin 4a and its derivative vanish: tan² a = 5.
+    let a = 5.0_f64.sqrt().atan();
+    let exact = -0.5 * a.sin() / (4.0 * a).sin();
+    let found = rows(&result, "ab");
+    let [fold] = found[..] else {
+        panic!("{} rows", found.len());
+    };
+    assert_eq!(fold.status(), BifurcationStatus::Located);
+    assert!((fold.value - exact).abs() < fold.error && fold.error < 1e-4);
+
+    let words = "sweep.from=-0.8 sweep.to=-0.7 detect.marginals=[\"a\"] detect.joint=[]";
+    let (_, result) = swept(TWO_ROTORS, words);
+    let found = rows(&result, "a");
+    let [split] = found[..] else {
+        panic!("{} rows", found.len());
+    };
+    // The density of a, ∫ exp(-2 U) db, is flat at 0 there: the trapezoidal rule of 200 nodes and a bisection.
+    let curvature = |k: f64| -> f64 {
+        let nodes = (0..200).map(|node| f64::from(node) * TAU / 200.0);
+        let terms = nodes.map(|b| {
+            let slope = 4.0 * k * (2.0 * b).sin();
+            (slope * slope - 2.0 - 8.0 * k * (2.0 * b).cos())
+                * (2.0 * b.cos() + 2.0 * k * (2.0 * b).cos()).exp()
+        });
+        terms.sum()
+    };
+    let (mut low, mut high) = (-0.8, -0.7);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        let is_below = curvature(middle) * curvature(low) > 0.0;
+        *(if is_below { &mut low } else { &mut high }) = middle;
+    }
+    assert_eq!(split.status(), BifurcationStatus::Located);
+    assert!(
+        (split.value - low).abs() < split.error,
+        "{} ± {}, {low}",
+        split.value,
+        split.error
+    );
 }

@@ -17,8 +17,10 @@ const TRIED: [usize; 10] = [3, 4, 5, 6, 8, 10, 12, 16, 20, 24];
 /// Numbers of harmonics that are tried beyond these: an angle that is held fast by little noise needs many.
 const MORE_HARMONICS: [usize; 4] = [30, 38, 48, 60];
 
-/// Nodes of all axes together up to which numbers are tried for more than one axis: a solve takes their cube.
+/// Nodes of all axes together up to which numbers are tried for more than one axis beside cells, along which each cell
+/// has a block of them, and without: a solve takes their cube.
 const MOST_NODES: usize = 150;
+const MOST_NODES_ALONE: usize = 576;
 
 /// Iterations of a solve on coarse cells, which takes some tens where there is a steady state.
 const MOST_ITERATIONS: usize = 100;
@@ -26,8 +28,9 @@ const MOST_ITERATIONS: usize = 100;
 /// Change of a watched density, relative to its largest value, that more modes may still make.
 const CHANGE: f64 = 1e-4;
 
-/// The same where nothing but harmonics is solved for, which costs next to nothing.
+/// The same where nothing but harmonics of one angle is solved for, which costs next to nothing, and of several.
 const CHANGE_ALONE: f64 = 1e-10;
+const CHANGE_OF_SEVERAL: f64 = 1e-6;
 
 /// Change up to which it may be the cells' doing that it no longer falls, and the share of the change before it that it
 /// has then; and change up to which the largest number that is tried will do.
@@ -106,12 +109,14 @@ pub(crate) fn automatic_modes(
         is_enough: false,
     };
     let nodes = |count: usize| open.iter().map(|_| count).product::<usize>();
-    let affordable = |&count: &usize| open.len() < 2 || nodes(count) <= MOST_NODES;
     let axes = problem.space().axes();
-    let wanted = match axes.iter().all(Axis::is_closed) {
-        true => CHANGE_ALONE,
-        false => CHANGE,
+    let (wanted, most) = match (axes.iter().all(Axis::is_closed), open.len()) {
+        (true, 1) => (CHANGE_ALONE, usize::MAX),
+        (true, _) => (CHANGE_OF_SEVERAL, MOST_NODES_ALONE),
+        (false, 1) => (CHANGE, usize::MAX),
+        (false, _) => (CHANGE, MOST_NODES),
     };
+    let affordable = |&count: &usize| nodes(count) <= most;
     let closes = matches!(open, [axis] if axes[*axis].is_closed());
     let more = MORE_HARMONICS.into_iter().filter(|_| closes);
     for count in TRIED.into_iter().chain(more).filter(affordable) {

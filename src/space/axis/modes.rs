@@ -41,6 +41,7 @@ impl Axis {
             nodes: rule.nodes.iter().map(|s| middle + half * s).collect(),
             pieces: Vec::new(),
             series: Some(Series::Legendre),
+            layout: 1.0,
             closes: false,
         })
     }
@@ -62,6 +63,7 @@ impl Axis {
             nodes: rule.nodes.into_iter().map(place).collect(),
             pieces: Vec::new(),
             series: Some(Series::Hermite { mean, deviation }),
+            layout: 1.0,
             closes: false,
         })
     }
@@ -209,6 +211,11 @@ impl Axis {
         let nodes = self.nodes.iter();
         let weights = nodes.map(|&node| cardinal(turn(x) - turn(node), harmonics));
         weights.collect()
+    }
+
+    /// So many bins, times what finer axes have more of them: those over which its series is laid out.
+    pub(crate) fn laid_out(&self, bins: usize) -> usize {
+        (bins as f64 * self.layout).round() as usize
     }
 
     fn check_modes(count: usize) -> Result<(), SpaceError> {
