@@ -109,17 +109,21 @@ impl Partition {
         let size = (rate.size() + of_noise.size()).max(least);
         let middle = 0.5 * (from + to);
         let is_divisible = halvings > 0 && from < middle && middle < to;
-        if tail > ROUGH * size && is_divisible {
-            self.add(system, rule, (from, middle), least, halvings - 1)?;
-            return self.add(system, rule, (middle, to), least, halvings - 1);
-        }
+        // A place has so few digits that noise which dies beside it is known to no more.
+        let digits = f64::EPSILON * from.abs().max(to.abs());
         // The logarithm of a noise that is the same everywhere is no part of the slope.
         let log_rounding = if log_noise.size() > 0.0 {
-            OF_LOGARITHM
+            OF_LOGARITHM + digits * of_noise.size()
         } else {
             0.0
         };
-        let error = tail + log_rounding * STEEPEST[0] * 2.0 / (to - from);
+        let rounding =
+            digits * rate.derivative().size() + log_rounding * STEEPEST[0] * 2.0 / (to - from);
+        if tail > ROUGH * size + rounding && is_divisible {
+            self.add(system, rule, (from, middle), least, halvings - 1)?;
+            return self.add(system, rule, (middle, to), least, halvings - 1);
+        }
+        let error = tail + rounding;
         let last = self.parts.last();
         let exponent = last.map_or(0.0, |part| part.exponent + part.rate.integral_to(from));
         let gathered = last.map_or(0.0, |part| {

@@ -26,6 +26,15 @@ pub fn profile(
 ) -> Option<Profile> {
     let line = Partition::new(system, axis, found.ends)?;
     let samples = line.samples();
+        let t = turns(&samples);
+        eprintln!(
+            "parts {} samples {} turns {} {:?}",
+            line.parts.len(),
+            samples.len(),
+            t.len(),
+            t.iter().rev().take(4).collect::<Vec<_>>()
+        );
+    }
     Some(Profile {
         extrema: line.extrema(&samples, found.log_integral),
         turns: turns(&samples),
@@ -125,7 +134,8 @@ impl Partition {
 /// A smaller share of the slopes is no jump.
 const JUMP: f64 = 1e-8;
 
-/// The extrema of the slope, but for those at the ends and those that are rounding.
+/// The extrema of the slope, but for those at the ends and those that are rounding, or no more than errors: beside an
+/// end where the noise dies, the distance to which has few digits, slopes go up and down.
 fn turns(samples: &[SlopeAt]) -> Vec<Turn> {
     let mut turns = Vec::new();
     let Some(mut farthest) = samples.first() else {
@@ -134,10 +144,11 @@ fn turns(samples: &[SlopeAt]) -> Vec<Turn> {
     let mut rising: Option<bool> = None;
     for sample in samples {
         let change = sample.slope - farthest.slope;
+        let errors = sample.error + farthest.error;
         let goes_on = rising.is_some_and(|rising| (change > 0.0) == rising || change == 0.0);
         if goes_on {
             farthest = sample;
-        } else if change.abs() > ROUNDING * (sample.size + farthest.size) {
+        } else if change.abs() > ROUNDING * (sample.size + farthest.size) + errors {
             turns.extend(rising.map(|is_largest| Turn {
                 place: farthest.place,
                 is_largest,
@@ -183,6 +194,33 @@ mod tests {
         let axis = Axis::uniform(-4.0, 4.0, 60).unwrap();
         let masses = one_axis(system.as_ref(), &axis).unwrap();
         profile(system.as_ref(), &axis, &masses, centre).unwrap()
+    }
+
+    #[test]
+    fn beside_an_end_where_places_have_few_digits_slopes_do_not_turn() {
+        // p = x^(0.6/s - 1) (1 - x)^(1.4/s - 1): the slope of its logarithm falls where both powers are positive, and
+        // is largest at the zero of -a/x² - b/(1 - x)² for powers a < 0 < b of the same size, at the middle.
+        for (s, turn) in [(0.2, None), (1.0, Some(0.5))] {
+            let noise = format!("sqrt({s} x (1 - x))");
+            let model = TypedModel::new("jacobi", "Jacobi's process", ["x"])
+                .with_equation("x", "0.3 - x")
+                .with_noise("x", [noise.as_str()])
+                .with_bounds("x", "0", "1")
+                .with_interpretation(Interpretation::Ito)
+                .build()
+                .unwrap();
+            let system = model.system_with(&[]).unwrap();
+            let axis = Axis::uniform(0.0, 1.0, 100).unwrap();
+            let masses = one_axis(system.as_ref(), &axis).unwrap();
+            let profile = profile(system.as_ref(), &axis, &masses, None).unwrap();
+            let places: Vec<f64> = profile.turns.iter().map(|one| one.place).collect();
+            assert_eq!(places.len(), usize::from(turn.is_some()), "{places:?}");
+            let off = places.first().zip(turn).map_or(0.0, |(place, turn)| place - turn);
+            assert!(off.abs() < 1e-6, "{places:?}");
+            // More parts than ten a cell are no more digits.
+            let line = Partition::new(system.as_ref(), &axis, masses.ends).unwrap();
+            assert!(line.parts.len() < 1000, "{}", line.parts.len());
+        }
     }
 
     #[test]
