@@ -306,3 +306,26 @@ fn a_figure_is_drawn_by_its_name() {
     let figures = Figures::of_sweep(&empty, "t", &[0.5]);
     assert_eq!(figures.draw("diagram_x").unwrap(), []);
 }
+
+#[test]
+fn captions_typeset_typed_equations_and_need_no_title() {
+    let text = "\
+[system]
+equations = { x = 'alpha x - x^3' }
+noise = { x = 'sqrt(2 D sigma2)' }
+parameters = { D = 0.5, sigma2 = 1.0 }
+[sweep]
+parameter = 'alpha'
+from = 0.5
+to = 1.0
+points = 3
+[cells]
+x = { from = -3, to = 3, count = 60 }
+";
+    let (sweep, result) = crate::common::sweeps::swept(text, "");
+    assert_eq!(sweep.settings.title, "Sweep of alpha");
+    let figures = Figures::of_sweep(&result, "", &[]);
+    let diagram = figures.draw("diagram_x").unwrap().remove(0);
+    let system = "System: x' = α x - x³ + √(2 D σ²) ξ₁(t); E[ξ_i(t) ξ_j(t+τ)] = δ_ij δ(τ), with D = 0.5, σ² = 1.";
+    assert!(diagram.caption.contains(system), "{}", diagram.caption);
+}

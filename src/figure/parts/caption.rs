@@ -6,7 +6,7 @@ use crate::figure::canvas::look::{DECADES, Look};
 use crate::figure::canvas::symbols;
 use crate::figure::parts::names;
 use crate::space::Axis;
-use crate::system::Family;
+use crate::system::{Family, Model};
 use crate::topology::Between;
 
 /// The caption of a figure of a sweep, from what is seen in it and what is marked in it; empty parts are left out.
@@ -116,7 +116,7 @@ pub(crate) fn parameter_named(family: &Family, name: &str) -> String {
 /// The system with its parameters but for one that is swept besides the family's own.
 fn system_in(family: &Family, second: &str) -> String {
     let model = family.model();
-    let equations = model.equations.join("; ");
+    let equations = equations_of(model);
     let fixed: Vec<String> = family
         .fixed()
         .filter(|(name, _)| *name != second)
@@ -130,7 +130,26 @@ fn system_in(family: &Family, second: &str) -> String {
     } else {
         format!(", with {}", fixed.join(", "))
     };
-    format!("System: {} ({equations}){fixed}.", model.title)
+    match model.title.as_str() {
+        "" => format!("System: {equations}{fixed}."),
+        title => format!("System: {title} ({equations}){fixed}."),
+    }
+}
+
+/// The equations in the symbols of the figure: typed ones typeset, and what their noises are.
+fn equations_of(model: &Model) -> String {
+    let Some(typed) = model.typed() else {
+        return model.equations.join("; ");
+    };
+    let (mut lines, source) = (typed.typeset(), typed.source());
+    let typed = source.equations().len() + source.definitions().len();
+    lines.extend(model.equations.iter().skip(typed).cloned());
+    let equations = lines.join("; ");
+    let mut parameters = model.parameters.iter();
+    match parameters.any(|one| in_letters(&one.symbol) == "σ²") {
+        true => equations.replace("σ₂", "σ²"),
+        false => equations,
+    }
 }
 
 /// The method and the cells.
