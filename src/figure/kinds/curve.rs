@@ -74,7 +74,7 @@ pub(in crate::figure) fn sketches<'a>(
             family,
         };
         let page = scene.draw(print);
-        Some(Figure::new(&page, scene.caption(), scene.data()))
+        Some(Figure::new(&page, scene.caption(print), scene.data()))
     };
     vec![Sketch::new("curve", draw)]
 }
@@ -214,15 +214,20 @@ impl Scene<'_> {
         }
     }
 
-    fn caption(&self) -> String {
+    fn caption(&self, print: &Print<'_>) -> String {
         let mut text = self.first_in_words();
         text += &self.stability.caption();
         text += &self.levels.caption();
         text += &self.crossed.caption();
         let [_, second] = self.plane.sides();
+        // What is said of a fixed point alone follows from the equations.
+        let solved_by = match (self.curves, self.levels.curves) {
+            ([], []) => "",
+            _ => &print.solved_by,
+        };
         format!(
             "{text} {}\n",
-            caption::of_plane(self.family, &second.parameter)
+            caption::of_plane(self.family, &second.parameter, solved_by)
         )
     }
 

@@ -11,7 +11,15 @@ use crate::topology::Between;
 
 /// The caption of a figure of a sweep, from what is seen in it and what is marked in it; empty parts are left out.
 pub(crate) fn of_sweep(result: &SweepResult, seen: String, marked: &[String]) -> String {
-    let subject = [seen, system_of(&result.subject.family), method(result)];
+    let family = &result.subject.family;
+    let mut solved = result.points.iter();
+    let solved = solved.find(|point| !point.densities.is_empty());
+    let method = solved.map(|point| {
+        let watched = point.densities.iter();
+        let watched = watched.map(|one| (one.observable, one.density.axes.clone()));
+        solved_by(family, point.report.method, watched)
+    });
+    let subject = [seen, system_of(family), method.unwrap_or_default()];
     let parts = subject.iter().chain(marked);
     let parts: Vec<&str> = parts
         .filter(|part| !part.is_empty())
@@ -78,9 +86,9 @@ pub(crate) fn parameter(family: &Family) -> String {
 }
 
 /// A symbol without its markup.
-fn in_letters(symbol: &str) -> String {
+pub(crate) fn in_letters(symbol: &str) -> String {
     let raised = symbol.replace("^{2}", "²").replace("^{3}", "³");
-    raised.replace(['{', '}', '$'], "")
+    raised.replace(['{', '}', '$', '\\'], "")
 }
 
 /// A value to the second digit of its error.
@@ -103,9 +111,11 @@ pub(crate) fn system_of(family: &Family) -> String {
 }
 
 /// What ends the caption of a figure of a plane: the system, with the parameters that neither side of the plane
-/// changes, and what computed it.
-pub(crate) fn of_plane(family: &Family, second: &str) -> String {
-    format!("{} {}", system_in(family, second), version())
+/// changes, how it was solved, as [`solved_by`] says it (may be empty), and what computed it.
+pub(crate) fn of_plane(family: &Family, second: &str, solved_by: &str) -> String {
+    let parts = [system_in(family, second), solved_by.to_owned(), version()];
+    let parts = parts.into_iter().filter(|part| !part.is_empty());
+    parts.collect::<Vec<_>>().join(" ")
 }
 
 /// A parameter as figures have it, in plain letters.
@@ -152,23 +162,15 @@ fn equations_of(model: &Model) -> String {
     }
 }
 
-/// The method and the cells.
-fn method(result: &SweepResult) -> String {
-    let Some(solved) = result
-        .points
-        .iter()
-        .find(|point| !point.densities.is_empty())
-    else {
-        return String::new();
-    };
-    let family = &result.subject.family;
-    let mut axes: Vec<(usize, &Axis)> = Vec::new();
-    for estimated in &solved.densities {
-        let numbers = match estimated.observable {
-            Observable::Marginal(axis) => vec![axis],
-            Observable::Joint(first, second) => vec![first, second],
-        };
-        for (number, axis) in numbers.into_iter().zip(&estimated.density.axes) {
+/// The method and the cells of what is watched.
+pub(crate) fn solved_by(
+    family: &Family,
+    method: &str,
+    watched: impl IntoIterator<Item = (Observable, Vec<Axis>)>,
+) -> String {
+    let mut axes: Vec<(usize, Axis)> = Vec::new();
+    for (observable, own) in watched {
+        for (number, axis) in observable.axes().into_iter().zip(own) {
             if axes.iter().all(|(known, _)| *known != number) {
                 axes.push((number, axis));
             }
@@ -184,11 +186,7 @@ fn method(result: &SweepResult) -> String {
         )
     });
     let cells: Vec<String> = cells.collect();
-    format!(
-        "Method: {}; cells: {}.",
-        solved.report.method,
-        cells.join(", ")
-    )
+    format!("Method: {method}; cells: {}.", cells.join(", "))
 }
 
 /// What is drawn between the cells of some observables.
