@@ -157,7 +157,7 @@ const TITLES: [(MeasureKind, &str); 17] = [
     (PASSAGE_KRAMERS, "Kramers' rate"),
     (PASSAGE_MELNIKOV, "Mel'nikov's rate"),
     (PASSAGE_SURVIVAL, "probability to last longer than"),
-    (PASSAGE_QUANTILE, "quantile of the time"),
+    (PASSAGE_QUANTILE, "time quantile"),
     (PASSAGE_SHARE, "share that ends in"),
     (DEVIATION, "standard deviation"),
     (EXPONENT, "largest Lyapunov exponent"),
