@@ -321,6 +321,9 @@ to = 1.0
 points = 3
 [cells]
 x = { from = -3, to = 3, count = 60 }
+[spectrum]
+of = ['x']
+to = 3.0
 ";
     let (sweep, result) = crate::common::sweeps::swept(text, "");
     assert_eq!(sweep.settings.title, "Sweep of alpha");
@@ -328,6 +331,12 @@ x = { from = -3, to = 3, count = 60 }
     let diagram = figures.draw("diagram_x").unwrap().remove(0);
     let system = "System: x' = α x - x³ + √(2 D σ²) ξ₁(t); E[ξ_i(t) ξ_j(t+τ)] = δ_ij δ(τ), with D = 0.5, σ² = 1.";
     assert!(diagram.caption.contains(system), "{}", diagram.caption);
+    let spectra = figures.draw("spectrogram_x").unwrap().remove(0);
+    assert!(
+        spectra.caption.contains(" over α, with"),
+        "{}",
+        spectra.caption
+    );
 }
 
 #[test]

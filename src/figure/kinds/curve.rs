@@ -233,31 +233,29 @@ impl Scene<'_> {
 
     /// What the caption says of the first curve and of points of codimension two.
     fn first_in_words(&self) -> String {
-        let [first, second] = self.plane.sides();
+        let sides = self.plane.sides();
+        let [first, second] = sides
+            .each_ref()
+            .map(|side| caption::parameter_named(self.family, &side.parameter));
         let Some(curve) = self.curves.first() else {
             let what = match self.levels.curves.first() {
                 Some(curve) => format!("Where {}", curve.words()),
                 None => "The fixed point".to_owned(),
             };
             return format!(
-                "{what} in the plane of {} and {}, begun at {} at {} = {}.",
-                first.parameter,
-                second.parameter,
+                "{what} in the plane of {first} and {second}, begun at {} at {first} = {}.",
                 self.row.label,
-                first.parameter,
                 symbols::rounded(self.row.value),
             );
         };
         let errors = curve.points.iter().map(|point| point.error);
         let largest = errors.fold(0.0, f64::max);
         let mut text = format!(
-            "Where the {} of the steady-state density {} is zero, in the plane of {} and {}, followed from {} at {} = {}.",
+            "Where the {} of the steady-state density {} is zero, in the plane of {first} and {second}, \
+             followed from {} at {first} = {}.",
             curve.kind.name(),
             caption::density(self.family, curve.observable),
-            caption::parameter_named(self.family, &first.parameter),
-            caption::parameter_named(self.family, &second.parameter),
             self.row.label,
-            caption::parameter_named(self.family, &first.parameter),
             symbols::rounded(self.row.value),
         );
         for end in &curve.ends {
@@ -266,11 +264,9 @@ impl Scene<'_> {
         for point in codimension_two(self.curves) {
             let [x, y] = point.values.map(symbols::rounded);
             text += &format!(
-                " {}: {}, at {} = {x}, {} = {y}.",
+                " {}: {}, at {first} = {x}, {second} = {y}.",
                 point.label,
-                point.kind.name(),
-                first.parameter,
-                second.parameter
+                point.kind.name()
             );
         }
         text += &format!(

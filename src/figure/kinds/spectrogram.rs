@@ -123,7 +123,7 @@ fn draw(result: &SweepResult, asked: &SpectrumOf, print: &Print<'_>) -> Drawn {
     let seen = format!(
         "Power spectrum of {} (colours, logarithmic over {DECADES} decades) over {}, with the frequency of its highest maximum above zero.",
         asked.of,
-        family.parameter()
+        caption::parameter(family)
     );
     let marked = [spectral_rows(result, asked)];
     Some(Figure::new(
@@ -181,7 +181,7 @@ fn spectral_rows(result: &SweepResult, asked: &SpectrumOf) -> String {
         let (value, error) = (crossing.value, crossing.error);
         let value = caption::to_digits_of_error(value, error);
         let change = row.words(family)?.change;
-        let parameter = family.parameter();
+        let parameter = caption::parameter(family);
         Some(format!(
             "{}: {change}, {parameter} = {value} ± {error:.1e}.",
             crossing.label
