@@ -90,6 +90,7 @@ impl Plane {
                 Figures::of_curves((plane, tree), (origin, &[]), family, title)
             }
         };
+        let figures = figures.solved_by(settings.method.kind.name(), self.sweep.problem.watched());
         of(&figures.with_style(&settings.figures.style))
     }
 }

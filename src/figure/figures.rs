@@ -5,13 +5,15 @@ use rayon::prelude::*;
 
 use super::FigureError;
 use super::kinds::{self, Sketch, Sweep};
-use super::parts::names;
+use super::parts::{caption, names};
 use super::print::{Figure, Print};
 use super::style::FigureStyle;
 use crate::compare::Comparison;
 use crate::continuation::SweepResult;
 use crate::continuation::curve::{CurveOrigin, CurveTree, Plane, SweepInPlane};
 use crate::continuation::map::RegimeMap;
+use crate::density::Observable;
+use crate::space::Axis;
 use crate::system::{Family, Model, ParameterValues};
 
 /// The figures that can be drawn of a sweep, a comparison, a map, curves or a friction law. Nothing is drawn before it
@@ -32,6 +34,7 @@ impl<'a> Figures<'a> {
             kinds: Vec::new(),
             print: Print {
                 title,
+                solved_by: String::new(),
                 look,
                 part: (0, 1),
             },
@@ -86,6 +89,17 @@ impl<'a> Figures<'a> {
     /// with one that exerts no force with these values.
     pub fn of_friction(model: &'a Model, values: &'a ParameterValues, title: &'a str) -> Self {
         Self::new(title, kinds::friction::sketches(model, values))
+    }
+
+    /// The same figures of a map or of curves, whose captions then tell the method (by its name in sweep files) and the
+    /// cells of the densities that are watched. Those of a sweep know it from its points.
+    pub fn solved_by(
+        mut self,
+        method: &str,
+        (family, watched): (&Family, Vec<(Observable, Vec<Axis>)>),
+    ) -> Self {
+        self.print.solved_by = caption::solved_by(family, method, watched);
+        self
     }
 
     /// The same figures in a style of their own.

@@ -78,6 +78,8 @@ impl Figure {
 pub(super) struct Print<'a> {
     /// Plain text, may be empty.
     pub(super) title: &'a str,
+    /// Of a plane: by which method and on which cells it was solved, as captions have it; may be empty.
+    pub(super) solved_by: String,
     pub(super) look: Look,
     /// Which of how many pages, counted from zero.
     pub(super) part: (usize, usize),

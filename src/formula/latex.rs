@@ -1,5 +1,7 @@
 //! Text as LaTeX, so that pdflatex compiles whatever a table or a caption holds.
 
+use crate::formula::language::subscript_digit;
+
 /// Letters and signs that LaTeX writes in mathematics.
 const MATHEMATICS: &[(char, &str)] = &[
     ('α', "\\alpha"),
@@ -51,15 +53,32 @@ const MATHEMATICS: &[(char, &str)] = &[
     ('°', "^\\circ"),
     ('²', "^2"),
     ('³', "^3"),
+    ('⁻', "^-"),
+    ('⁰', "^0"),
+    ('¹', "^1"),
+    ('⁴', "^4"),
+    ('⁵', "^5"),
+    ('⁶', "^6"),
+    ('⁷', "^7"),
+    ('⁸', "^8"),
+    ('⁹', "^9"),
 ];
 
 /// Letters from À to ž that LaTeX's default encoding of fonts (OT1) cannot make.
 const NOT_IN_FONTS: &str = "ÐÞðþĄąĐđĘęĦħĮįĸĿŀŉŊŋŦŧŲų";
 
-/// A symbol with `_{}` and `^{}` as LaTeX mathematics: its Greek and dotted letters and signs as commands.
+/// A symbol with `_{}` and `^{}` as LaTeX mathematics: its Greek and dotted letters and signs as commands, and digits
+/// that are lowered as indices.
 pub(crate) fn mathematics(symbol: &str) -> String {
     let mut text = String::new();
+    let mut is_lowered = false;
     for letter in symbol.chars() {
+        let digit = subscript_digit(letter);
+        if digit.is_some() != is_lowered {
+            text += if is_lowered { "}" } else { "_{" };
+            is_lowered = !is_lowered;
+        }
+        let letter = digit.unwrap_or(letter);
         // A letter behind a command would become part of its name.
         if letter.is_ascii_alphabetic() && ends_in_command(&text) {
             text.push(' ');
@@ -68,6 +87,9 @@ pub(crate) fn mathematics(symbol: &str) -> String {
             Some(command) => text += command,
             None => text.push(letter),
         }
+    }
+    if is_lowered {
+        text.push('}');
     }
     text
 }
@@ -101,6 +123,9 @@ pub(crate) fn with_symbols(text: &str) -> String {
             Some((letters, lowered)) if !letters.is_empty() && !lowered.is_empty() => {
                 let lowered = mathematics(&lowered.replace('_', ","));
                 made += &format!("${}_{{{lowered}}}$", mathematics(letters));
+            }
+            _ if name.contains(|c| subscript_digit(c).is_some()) => {
+                made += &format!("${}$", mathematics(name));
             }
             _ => made += &escape(name),
         }
@@ -155,6 +180,7 @@ mod tests {
             ),
             ("θ < 3 ± 1", "$\\theta$ $<$ 3 $\\pm$ 1"),
             ("Itô, Caughey–Ma", "Itô, Caughey--Ma"),
+            ("x⁻¹", "x$^-$$^1$"),
             ("峰 đ", "\\texttt{U+5CF0} \\texttt{U+0111}"),
         ] {
             assert_eq!(escape(text), expected);
@@ -166,6 +192,7 @@ mod tests {
         assert_eq!(mathematics("σ^{2}"), "\\sigma^{2}");
         assert_eq!(mathematics("αx_{ω}t"), "\\alpha x_{\\omega}t");
         assert_eq!(mathematics("f_{c}"), "f_{c}");
+        assert_eq!(mathematics("ω₁₂t₀"), "\\omega_{12}t_{0}");
     }
 
     #[test]
@@ -176,6 +203,7 @@ mod tests {
             "p(x, $\\dot{x}$) at $f_{c}$ = -0.02, with $\\sigma$$^2$ = 5 \\%"
         );
         assert_eq!(with_symbols("_ a_ _b"), "\\_ a\\_ \\_b");
+        assert_eq!(with_symbols("√(2 D) ξ₁(t)"), "$\\surd$(2 D) $\\xi_{1}$(t)");
     }
 
     #[test]

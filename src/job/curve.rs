@@ -266,6 +266,7 @@ impl Job for CurveJob<'_> {
             family,
             &settings.title,
         )
+        .solved_by(settings.method.kind.name(), self.sweep.problem.watched())
         .with_style(&settings.figures.style)
         .draw_all()
     }

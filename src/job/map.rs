@@ -70,6 +70,7 @@ impl Job for MapJob<'_> {
     fn figures(&self, found: &RegimeMap, _: &Context<'_>) -> Vec<Figure> {
         let settings = &self.sweep.settings;
         Figures::of_map(found, &[], &settings.title)
+            .solved_by(settings.method.kind.name(), self.sweep.problem.watched())
             .with_style(&settings.figures.style)
             .draw_all()
     }

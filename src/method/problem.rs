@@ -188,6 +188,13 @@ impl Problem {
         &self.bins
     }
 
+    /// The family, and what the densities that are watched are laid out on.
+    pub fn watched(&self) -> (&Family, Vec<(Observable, Vec<Axis>)>) {
+        let watched = self.observables().iter();
+        let watched = watched.map(|&one| (one, self.axes_of(one)));
+        (self.family(), watched.collect())
+    }
+
     /// What an observable's densities are laid out on.
     pub(crate) fn axes_of(&self, observable: Observable) -> Vec<Axis> {
         let all = || self.space.axes().iter().chain(&self.bins);

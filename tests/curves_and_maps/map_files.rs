@@ -151,6 +151,7 @@ fn what_sweeps_locate_is_marked_in_the_plane_that_they_lie_in() {
         caption.contains("sweeps over h at a = 0.6, over a at h = 0.2"),
         "{caption}"
     );
+    assert!(caption.contains("Method: generator; cells: "), "{caption}");
     let marked = read("map_x.svg");
     room.done(draw);
     assert_ne!(read("map_x.svg"), marked);

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use pbif::continuation::SweepResult;
+use pbif::continuation::{Measure, SweepResult};
 use pbif::figure::{FigureError, FigureSettings, Figures, Format, write_figures};
 use pbif::space::Axis;
 
@@ -305,4 +305,72 @@ fn a_figure_is_drawn_by_its_name() {
     };
     let figures = Figures::of_sweep(&empty, "t", &[0.5]);
     assert_eq!(figures.draw("diagram_x").unwrap(), []);
+}
+
+#[test]
+fn captions_typeset_typed_equations_and_need_no_title() {
+    let text = "\
+[system]
+equations = { x = 'alpha x - x^3' }
+noise = { x = 'sqrt(2 D sigma2)' }
+parameters = { D = 0.5, sigma2 = 1.0 }
+[sweep]
+parameter = 'alpha'
+from = 0.5
+to = 1.0
+points = 3
+[cells]
+x = { from = -3, to = 3, count = 60 }
+[spectrum]
+of = ['x']
+to = 3.0
+";
+    let (sweep, result) = crate::common::sweeps::swept(text, "");
+    assert_eq!(sweep.settings.title, "Sweep of alpha");
+    let figures = Figures::of_sweep(&result, "", &[]);
+    let diagram = figures.draw("diagram_x").unwrap().remove(0);
+    let system = "System: x' = α x - x³ + √(2 D σ²) ξ₁(t); E[ξ_i(t) ξ_j(t+τ)] = δ_ij δ(τ), with D = 0.5, σ² = 1.";
+    assert!(diagram.caption.contains(system), "{}", diagram.caption);
+    let spectra = figures.draw("spectrogram_x").unwrap().remove(0);
+    assert!(
+        spectra.caption.contains(" over α, with"),
+        "{}",
+        spectra.caption
+    );
+}
+
+#[test]
+fn measures_are_told_in_words_and_those_of_solvers_are_not_among_them() {
+    let mut result = bistable();
+    let measure = |name: &str, unit: &str, value: f64| Measure {
+        name: name.to_owned(),
+        value,
+        error: None,
+        unit: unit.to_owned(),
+    };
+    for point in &mut result.points {
+        point.report.measures = vec![
+            measure("sd_x", "x", 1.0 + point.value.powi(2)),
+            measure("decay_rate_1", "1/t", 2.0 + point.value),
+            measure("edge_mass_x", "1", 1e-9),
+            measure("factorisations", "1", 1.0),
+        ];
+    }
+    let figures = Figures::of_sweep(&result, "", &[]);
+    let names = figures.names();
+    let measures: Vec<&String> = names
+        .iter()
+        .filter(|name| name.starts_with("measures"))
+        .collect();
+    assert_eq!(
+        measures,
+        ["measures", "measures_sd_x", "measures_decay_rate_1"]
+    );
+    let sheet = figures.draw("measures").unwrap().remove(0);
+    assert_shows(
+        &sheet.svg(),
+        &["standard deviation of x", "decay rate 1 [1/t]"],
+    );
+    let caption = "error: standard deviation of x, decay rate 1. ";
+    assert!(sheet.caption.contains(caption), "{}", sheet.caption);
 }

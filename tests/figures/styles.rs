@@ -152,6 +152,32 @@ fn grey_is_grey_everywhere() {
 }
 
 #[test]
+fn a_single_map_is_a_square_in_every_style() {
+    let result = rayleigh(("coulomb", "f_c"), 1.0, &uniform());
+    for width in FigureWidth::NAMED {
+        let style = FigureStyle {
+            width,
+            ..FigureStyle::default()
+        };
+        let figures = Figures::of_sweep(&result, TITLE, &[-0.5]).with_style(&style);
+        let map = figures.draw("joint_xy_-0.5").unwrap().remove(0);
+        assert_readable(&map, &style);
+        let svg = map.svg();
+        let svg = Document::parse(&svg).unwrap();
+        let mut images = svg.descendants().filter(|one| one.has_tag_name("image"));
+        let image = images.next().unwrap();
+        let [wide, high] = ["width", "height"].map(|name| {
+            let length: f64 = image.attribute(name).unwrap().parse().unwrap();
+            length
+        });
+        assert!(
+            (wide / high - 1.0).abs() < 2e-3,
+            "{width:?}: {wide} by {high}"
+        );
+    }
+}
+
+#[test]
 fn logarithmic_colours_tell_their_floor() {
     let style = FigureStyle {
         scale: ColourScale::Log,

@@ -49,7 +49,9 @@ pub(super) fn run(
             Figures::of_curves((plane, tree), (origin, &sweeps), family, title)
         }
     };
-    let figures = figures.with_style(style);
+    let figures = figures
+        .solved_by(settings.method.kind.name(), spec.problem.watched())
+        .with_style(style);
     let words: Vec<&str> = arguments.only.iter().map(|word| word.trim()).collect();
     figures.check(&words)?;
     let figures = match words.as_slice() {

@@ -74,7 +74,7 @@ pub(in crate::figure) fn sketches<'a>(
             family,
         };
         let page = scene.draw(print);
-        Some(Figure::new(&page, scene.caption(), scene.data()))
+        Some(Figure::new(&page, scene.caption(print), scene.data()))
     };
     vec![Sketch::new("curve", draw)]
 }
@@ -214,45 +214,48 @@ impl Scene<'_> {
         }
     }
 
-    fn caption(&self) -> String {
+    fn caption(&self, print: &Print<'_>) -> String {
         let mut text = self.first_in_words();
         text += &self.stability.caption();
         text += &self.levels.caption();
         text += &self.crossed.caption();
         let [_, second] = self.plane.sides();
+        // What is said of a fixed point alone follows from the equations.
+        let solved_by = match (self.curves, self.levels.curves) {
+            ([], []) => "",
+            _ => &print.solved_by,
+        };
         format!(
             "{text} {}\n",
-            caption::of_plane(self.family, &second.parameter)
+            caption::of_plane(self.family, &second.parameter, solved_by)
         )
     }
 
     /// What the caption says of the first curve and of points of codimension two.
     fn first_in_words(&self) -> String {
-        let [first, second] = self.plane.sides();
+        let sides = self.plane.sides();
+        let [first, second] = sides
+            .each_ref()
+            .map(|side| caption::parameter_named(self.family, &side.parameter));
         let Some(curve) = self.curves.first() else {
             let what = match self.levels.curves.first() {
                 Some(curve) => format!("Where {}", curve.words()),
                 None => "The fixed point".to_owned(),
             };
             return format!(
-                "{what} in the plane of {} and {}, begun at {} at {} = {}.",
-                first.parameter,
-                second.parameter,
+                "{what} in the plane of {first} and {second}, begun at {} at {first} = {}.",
                 self.row.label,
-                first.parameter,
                 symbols::rounded(self.row.value),
             );
         };
         let errors = curve.points.iter().map(|point| point.error);
         let largest = errors.fold(0.0, f64::max);
         let mut text = format!(
-            "Where the {} of the steady-state density {} is zero, in the plane of {} and {}, followed from {} at {} = {}.",
+            "Where the {} of the steady-state density {} is zero, in the plane of {first} and {second}, \
+             followed from {} at {first} = {}.",
             curve.kind.name(),
             caption::density(self.family, curve.observable),
-            caption::parameter_named(self.family, &first.parameter),
-            caption::parameter_named(self.family, &second.parameter),
             self.row.label,
-            caption::parameter_named(self.family, &first.parameter),
             symbols::rounded(self.row.value),
         );
         for end in &curve.ends {
@@ -261,11 +264,9 @@ impl Scene<'_> {
         for point in codimension_two(self.curves) {
             let [x, y] = point.values.map(symbols::rounded);
             text += &format!(
-                " {}: {}, at {} = {x}, {} = {y}.",
+                " {}: {}, at {first} = {x}, {second} = {y}.",
                 point.label,
-                point.kind.name(),
-                first.parameter,
-                second.parameter
+                point.kind.name()
             );
         }
         text += &format!(

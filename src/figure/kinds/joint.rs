@@ -120,20 +120,27 @@ fn several(result: &SweepResult, observable: usize) -> Vec<&Point> {
         .collect()
 }
 
-/// One map at one point.
+/// One map at one point: a square in every style, in the middle of a page that is wider.
 fn draw_single(joint: &Joint<'_>, print: &Print<'_>) -> Option<Page> {
     let (look, found, (x, y)) = (&print.look, &joint.found[0], joint.window);
     let [first, second, density] = &joint.titles;
     let largest = found.shown.largest;
     let own = |page: f64| (0.68 * page).clamp(170.0, TALLEST);
     let high = look.tall * look.page.map_or(SINGLE, own);
-    let up = Scale::vertical(look, y, high, second);
-    let bar = ColourBar::new(look, largest, high, density);
+    let beside = |side: f64| {
+        let up = Scale::vertical(look, y, side, second);
+        (up, ColourBar::new(look, largest, side, density))
+    };
+    // What stands beside the map hardly depends on its height: a first round measures it.
+    let (up, bar) = beside(high);
+    let side = high.min(look.fill(high, MARGIN + up.left() + bar.width() + MARGIN));
+    let (up, bar) = beside(side);
+    let across = Scale::horizontal(look, x, side, first);
     let left = MARGIN + up.left();
-    let wide = look.fill(SINGLE, left + bar.width() + MARGIN);
-    let across = Scale::horizontal(look, x, wide, first);
-    let width = left + wide + bar.width() + MARGIN;
-    let (page, map) = open_page(print, &joint.found, (left, width), (wide, high));
+    let own = left + side + bar.width() + MARGIN;
+    let width = look.page.unwrap_or(own);
+    let left = left + 0.5 * (width - own).max(0.0);
+    let (page, map) = open_page(print, &joint.found, (left, width), (side, side));
     write_above(&page, map, joint.at(found));
     draw_map(&page, map, found, (x, y), largest);
     across.draw_below(&page, map, true);

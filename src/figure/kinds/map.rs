@@ -77,7 +77,11 @@ pub(in crate::figure) fn sketches<'a>(
                 look: &print.look,
             };
             let (page, words) = scene.draw(print.title);
-            Some(Figure::new(&page, scene.caption(&words), scene.data()))
+            Some(Figure::new(
+                &page,
+                scene.caption(&words, &print.solved_by),
+                scene.data(),
+            ))
         };
         Sketch::new(format!("map_{}", names::file(family, *observable)), draw)
     };
@@ -284,7 +288,7 @@ impl Scene<'_> {
         }
     }
 
-    fn caption(&self, words: &[String]) -> String {
+    fn caption(&self, words: &[String], solved_by: &str) -> String {
         let [first, second] = self.map.plane.sides();
         let mut text = format!(
             "Regimes of the steady-state density {} in the plane of {} and {}: {}.",
@@ -312,7 +316,7 @@ impl Scene<'_> {
         }
         format!(
             "{text} {}\n",
-            caption::of_plane(self.family, &second.parameter)
+            caption::of_plane(self.family, &second.parameter, solved_by)
         )
     }
 

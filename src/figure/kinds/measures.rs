@@ -1,14 +1,21 @@
-//! Measures along the sweep, the numbers of a solved value, each with the band of its error: all below each other
-//! (`measures`), or one by its name (`measures_sd_x`). What is zero all along is left out.
+//! Measures along the sweep, the numbers of the process at each value, each with the band of its error: all below each
+//! other (`measures`), or one by its name (`measures_sd_x`). What is zero all along is left out.
 
 use super::{Drawn, Kind, Sketch};
-use crate::continuation::{Label, LevelCrossing, SweepResult};
+use crate::continuation::measure::{
+    AMPLIFICATION, AMPLITUDE, DECAY_DISCRIMINANT, DEVIATION, DIVERGENCE, EDGE_MASS, ESCAPE_RATE,
+    EXPONENT, FACTORISATIONS, MAP_STEP, NEGATIVE_MASS, NUMERICAL_DIFFUSION, PASSAGE_DEVIATION,
+    PASSAGE_KRAMERS, PASSAGE_MEAN, PASSAGE_MELNIKOV, PASSAGE_QUANTILE, PASSAGE_SHARE,
+    PASSAGE_SURVIVAL, SPECTRAL_PEAK, TIME_STEP_BIAS, TURN_DIFFUSION, VELOCITY,
+};
+use crate::continuation::{Label, LevelCrossing, Measure, MeasureKind, SweepResult};
 use crate::figure::canvas::style::{FRAME_LINE, GREY, Stroke};
 use crate::figure::canvas::symbols;
 use crate::figure::parts::along::{self, Curve, Track};
-use crate::figure::parts::caption;
 use crate::figure::parts::table::{self, number};
+use crate::figure::parts::{caption, names};
 use crate::figure::print::Print;
+use crate::system::Family;
 
 /// Height of a panel among others, and of one by itself, in pixels.
 const AMONG: f64 = 92.0;
@@ -67,16 +74,28 @@ impl MeasureSeries {
     }
 }
 
-/// The measures that are not zero all along, in the order in which the points have them.
+/// What tells of cells and solvers instead of the process: `health` and tables have it.
+const OF_SOLVERS: [MeasureKind; 6] = [
+    ESCAPE_RATE,
+    NEGATIVE_MASS,
+    EDGE_MASS,
+    MAP_STEP,
+    FACTORISATIONS,
+    NUMERICAL_DIFFUSION,
+];
+
+/// The measures of the process that are not zero all along, in the order in which the points have them; others where
+/// levels of them are asked for.
 fn measures(result: &SweepResult) -> Vec<MeasureSeries> {
+    let levels = &result.subject.family.questions.levels;
+    let is_of_solver = |one: &Measure| {
+        OF_SOLVERS.iter().any(|kind| kind.has(one))
+            && levels.iter().all(|level| level.measure != one.name)
+    };
     let mut found: Vec<MeasureSeries> = Vec::new();
     for point in &result.points {
-        for one in point
-            .report
-            .measures
-            .iter()
-            .filter(|one| one.value.is_finite())
-        {
+        let shown = point.report.measures.iter();
+        for one in shown.filter(|one| one.value.is_finite() && !is_of_solver(one)) {
             let value = (point.value, one.value, one.error.unwrap_or(0.0));
             match found.iter_mut().find(|known| known.name == one.name) {
                 Some(known) => known.values.push(value),
@@ -131,32 +150,111 @@ fn levels(result: &SweepResult, measure: &MeasureSeries) -> Vec<Curve> {
     lines.chain(drops).collect()
 }
 
-/// The name of a measure with what it is of lowered, as its symbol: `sd_y` becomes sd with an index ẋ.
-fn title(result: &SweepResult, name: &str) -> String {
-    let family = &result.subject.family;
-    let axes = 0..family.model().axes.len();
-    let index = |(word, of): (&str, &str)| {
-        let axis = axes.clone().find(|&axis| family.axis(axis) == of)?;
-        let of = family.axis_symbol(axis);
-        Some(format!(
-            "{}_{{{}}}",
-            symbols::plain(word),
-            of.replace(['{', '}'], "")
-        ))
-    };
-    let indexed = name.rsplit_once('_').and_then(index);
-    indexed.unwrap_or_else(|| symbols::plain(&name.replace('_', " ")))
+/// Words of measures that the field calls otherwise than tables do.
+const TITLES: [(MeasureKind, &str); 17] = [
+    (PASSAGE_MEAN, "mean time"),
+    (PASSAGE_DEVIATION, "standard deviation of the time"),
+    (PASSAGE_KRAMERS, "Kramers' rate"),
+    (PASSAGE_MELNIKOV, "Mel'nikov's rate"),
+    (PASSAGE_SURVIVAL, "probability to last longer than"),
+    (PASSAGE_QUANTILE, "time quantile"),
+    (PASSAGE_SHARE, "share that ends in"),
+    (DEVIATION, "standard deviation"),
+    (EXPONENT, "largest Lyapunov exponent"),
+    (DIVERGENCE, "sum of the Lyapunov exponents"),
+    (VELOCITY, "mean velocity"),
+    (TURN_DIFFUSION, "effective diffusion"),
+    (AMPLITUDE, "amplitude of the mean"),
+    (AMPLIFICATION, "spectral amplification"),
+    (DECAY_DISCRIMINANT, "discriminant of the slowest modes"),
+    (SPECTRAL_PEAK, "frequency of the spectral peak"),
+    (TIME_STEP_BIAS, "bias by the time step"),
+];
+
+/// What measures are of besides passages: names with their symbols as markup, the longest name first.
+struct Named<'a> {
+    family: &'a Family,
+    symbols: Vec<(String, String)>,
+}
+
+impl<'a> Named<'a> {
+    fn new(result: &'a SweepResult) -> Self {
+        let family = &result.subject.family;
+        let axes = 0..family.model().axes.len() + family.quantities().len();
+        let axes = axes.map(|axis| (family.axis(axis).to_owned(), names::axis(family, axis)));
+        let averaged = family.questions.averaged.iter();
+        let averaged = averaged.map(|one| (one.name().to_owned(), symbols::variable(one.symbol())));
+        let joint = result
+            .subject
+            .observables
+            .iter()
+            .filter(|one| one.axes().len() > 1);
+        let joint = joint.map(|&one| (one.name(family), names::density(family, one)));
+        let mut symbols: Vec<(String, String)> = axes.chain(averaged).chain(joint).collect();
+        symbols.sort_by_key(|(name, _)| std::cmp::Reverse(name.len()));
+        Self { family, symbols }
+    }
+
+    /// The name of a measure in words, as markup: `sd_y` becomes standard deviation of ẋ, `exit_mean` mean time (exit).
+    fn title(&self, name: &str) -> String {
+        let plain = |word: &str| symbols::plain(&word.replace('_', " "));
+        let titles = |follows: bool| {
+            TITLES
+                .iter()
+                .filter(move |(kind, _)| kind.follows == follows)
+        };
+        let mut passages = self.family.questions.passages.iter();
+        let passage = passages.find_map(|one| {
+            let word = name.strip_prefix(&one.name)?.strip_prefix('_')?;
+            Some((plain(&one.name), word))
+        });
+        if let Some((passage, word)) = passage {
+            let titled = titles(true).find_map(|(kind, title)| {
+                let before = word.strip_suffix(kind.word)?;
+                let before = plain(before.strip_suffix('_').unwrap_or(before));
+                Some(format!("{title} {before}").trim_end().to_owned())
+            });
+            return format!("{} ({passage})", titled.unwrap_or_else(|| plain(word)));
+        }
+        let of = self.symbols.iter().find_map(|(of, symbol)| {
+            let word = name.strip_suffix(of.as_str())?.strip_suffix('_')?;
+            Some((word, format!(" of {symbol}")))
+        });
+        let (word, of) = of.unwrap_or((name, String::new()));
+        let title = titles(false).find(|(kind, _)| kind.word == word);
+        title.map_or_else(|| plain(word), |(_, title)| (*title).to_owned()) + &of
+    }
+
+    /// A unit behind a title, in the symbols of the figure; nothing where it is that of the axis that the title names.
+    fn unit(&self, text: &str) -> String {
+        let symbol = |word: &str| self.symbols.iter().find(|(name, _)| name == word);
+        if text == "1" || symbol(text).is_some() {
+            return String::new();
+        }
+        let (mut made, mut rest) = (String::new(), text);
+        while !rest.is_empty() {
+            let begin = rest.find(char::is_alphabetic).unwrap_or(rest.len());
+            let (signs, after) = rest.split_at(begin);
+            let is_of_word = |c: char| c.is_alphanumeric() || c == '_';
+            let end = after.find(|c| !is_of_word(c)).unwrap_or(after.len());
+            let word = &after[..end];
+            made += &symbols::unit(signs);
+            made += &match symbol(word) {
+                Some((_, symbol)) => symbol.clone(),
+                None if word == "t" => symbols::variable(word),
+                None => symbols::plain(word),
+            };
+            rest = &after[end..];
+        }
+        format!(" [{made}]")
+    }
 }
 
 /// A panel each; `None` without a measure.
 fn draw(result: &SweepResult, all: &[MeasureSeries], (height, print): (f64, &Print<'_>)) -> Drawn {
+    let named = Named::new(result);
     let track = |one: &MeasureSeries| {
         let values = one.values.iter();
-        let unit = if one.unit == "1" {
-            String::new()
-        } else {
-            format!(" [{}]", symbols::unit(&one.unit))
-        };
         let errors: Vec<f64> = values.clone().map(|(_, _, error)| *error).collect();
         let mut curves = vec![Curve {
             name: String::new(),
@@ -166,7 +264,7 @@ fn draw(result: &SweepResult, all: &[MeasureSeries], (height, print): (f64, &Pri
         }];
         curves.extend(levels(result, one));
         Track {
-            title: format!("{}{unit}", title(result, &one.name)),
+            title: named.title(&one.name) + &named.unit(&one.unit),
             is_logarithmic: one.is_over_decades(),
             has_zero: false,
             least: errors
@@ -178,17 +276,20 @@ fn draw(result: &SweepResult, all: &[MeasureSeries], (height, print): (f64, &Pri
     };
     let tracks: Vec<Track> = all.iter().map(track).collect();
     let names: Vec<&str> = all.iter().map(|one| one.name.as_str()).collect();
+    let in_words = |name: &str| caption::in_letters(&named.title(name));
+    let words: Vec<String> = names.iter().map(|name| in_words(name)).collect();
     let parameter = result.subject.family.parameter();
     let symbol = caption::parameter(&result.subject.family);
     let mut seen = format!(
         "Measures of the steady state over {symbol}, each with the band of its error: {}.",
-        names.join(", ")
+        words.join(", ")
     );
     for crossing in crossings(result).filter(|one| names.contains(&one.asked.measure.as_str())) {
         let way = if crossing.rises { "rises" } else { "falls" };
         let (value, error) = (crossing.value, crossing.error);
         let value = caption::to_digits_of_error(value, error);
-        let (measure, level) = (&crossing.asked.measure, number(crossing.asked.level));
+        let measure = in_words(&crossing.asked.measure);
+        let level = number(crossing.asked.level);
         let label = &crossing.label;
         seen += &format!(
             " {label}: {measure} {way} through {level} at {symbol} = {value} ± {error:.1e}."

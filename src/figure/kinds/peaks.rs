@@ -1,6 +1,6 @@
 //! The peak diagram of a marginal: where its peaks and valleys lie, and how high they are, over the parameter.
 
-use crate::continuation::SweepResult;
+use crate::continuation::{Point, SweepResult};
 use crate::topology::{Feature, FeatureKind, Verdict};
 
 use super::{Drawn, Kind};
@@ -9,7 +9,8 @@ use crate::figure::parts::along::{self, Curve, Track};
 use crate::figure::parts::branches::{Branch, branches};
 use crate::figure::parts::meeting::{located, meet};
 use crate::figure::parts::table::{self, number as number_of};
-use crate::figure::parts::{caption, names, view};
+use crate::figure::parts::view::{self, View};
+use crate::figure::parts::{caption, names};
 use crate::figure::print::Print;
 
 /// Height of a panel, in pixels.
@@ -125,15 +126,68 @@ fn rows(result: &SweepResult, number: usize) -> String {
     table::table(&columns, rows.map(row))
 }
 
-/// The densities at the places of a branch.
+/// The densities at the places of a branch: as they were found where it was solved, else between those beside it.
 fn heights_of(result: &SweepResult, number: usize, branch: &Branch) -> Vec<(f64, f64)> {
-    let height = |&(value, position): &(f64, f64)| {
+    let found = |value: f64, position: f64| {
         let mut points = along::detections(result, number);
         let (_, detection) = points.find(|(at, _)| *at == value)?;
         let features = detection.features.iter();
         let mut own = features.filter(|one| one.kind == branch.kind);
         let feature = own.find(|one| one.position.first() == Some(&position))?;
-        Some((value, feature.density))
+        Some(feature.density)
+    };
+    let height = |&(value, position): &(f64, f64)| {
+        let height =
+            found(value, position).or_else(|| between(&result.points, number, (value, position)));
+        Some((value, height?))
     };
     branch.places.iter().filter_map(height).collect()
+}
+
+/// The density at a place, linear in the parameter between the points of the sweep beside it.
+fn between(points: &[Point], number: usize, (value, place): (f64, f64)) -> Option<f64> {
+    let after = points.partition_point(|point| point.value < value);
+    let pair = [after.checked_sub(1)?, after].map(|index| points.get(index));
+    let [Some(before), Some(after)] = pair else {
+        return None;
+    };
+    let height = |point: &Point| {
+        let view = View::new(view::density(point, number)?);
+        view.along(&[place]).first().copied()
+    };
+    let share = (value - before.value) / (after.value - before.value);
+    let height = (1.0 - share) * height(before)? + share * height(after)?;
+    height.is_finite().then_some(height)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::density::{Density, EstimatedDensity, Observable, Structure, Variants};
+    use crate::figure::parts::branches::tests::point;
+    use crate::space::Axis;
+
+    #[test]
+    fn heights_between_solved_values_are_linear_in_the_parameter() {
+        let at = |value: f64, density: f64| Point {
+            densities: vec![EstimatedDensity {
+                observable: Observable::Marginal(0),
+                standard_error: Vec::new(),
+                density: Density {
+                    axes: vec![Axis::uniform(-1.0, 1.0, 20).unwrap()],
+                    values: vec![density; 20],
+                },
+                variants: Variants::None,
+                structure: Structure::default(),
+                negligible: 0.0,
+                truncation: Default::default(),
+            }],
+            ..point(value, None)
+        };
+        let points = [at(0.0, 1.0), at(1.0, 3.0)];
+        assert_eq!(between(&points, 0, (0.25, 0.1)), Some(1.5));
+        for outside in [(-0.5, 0.1), (1.5, 0.1), (0.25, 2.0)] {
+            assert_eq!(between(&points, 0, outside), None);
+        }
+    }
 }

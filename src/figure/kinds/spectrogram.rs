@@ -7,7 +7,7 @@ use super::spectrum::{
 };
 use super::{Drawn, Kind, Sketch, Sweep};
 use crate::continuation::measure::SPECTRAL_PEAK;
-use crate::continuation::{LevelCrossing, SweepResult};
+use crate::continuation::{Label, LevelCrossing, SweepResult};
 use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::heat::{self, Picture};
@@ -17,6 +17,7 @@ use crate::figure::canvas::page::{Heading, Page, Rectangle, Shape};
 use crate::figure::canvas::style::{MARGIN, PNG_SCALE};
 use crate::figure::parts::along::parameter_range;
 use crate::figure::parts::bifurcations::Labels;
+use crate::figure::parts::meeting::meet_births;
 use crate::figure::parts::view::middles;
 use crate::figure::parts::{caption, names, table};
 use crate::figure::print::{Figure, Print};
@@ -122,7 +123,7 @@ fn draw(result: &SweepResult, asked: &SpectrumOf, print: &Print<'_>) -> Drawn {
     let seen = format!(
         "Power spectrum of {} (colours, logarithmic over {DECADES} decades) over {}, with the frequency of its highest maximum above zero.",
         asked.of,
-        family.parameter()
+        caption::parameter(family)
     );
     let marked = [spectral_rows(result, asked)];
     Some(Figure::new(
@@ -140,7 +141,8 @@ fn beside(places: &[f64], value: f64) -> (usize, f64) {
     (below, ((value - a) / (b - a)).clamp(0.0, 1.0))
 }
 
-/// Frequencies of the highest maximum along the sweep, in runs of neighbouring values that have one.
+/// Frequencies of the highest maximum along the sweep, in runs of neighbouring values that have one, led on to the
+/// changes at which they begin and end.
 fn peaks(
     result: &SweepResult,
     asked: &SpectrumOf,
@@ -160,6 +162,13 @@ fn peaks(
         }
     }
     runs.retain(|run| !run.is_empty());
+    let changes = result.labels.iter().filter_map(Label::spectral_change);
+    let own = changes.filter(|change| change.spectral().is_some_and(|(_, of)| of == asked.of));
+    let changes: Vec<f64> = own.map(|change| change.value).collect();
+    let values: Vec<f64> = result.points.iter().map(|point| point.value).collect();
+    meet_births(&mut runs, &changes, &values);
+    let in_window = |place: &mut (f64, f64)| place.1 = place.1.clamp(from, to);
+    runs.iter_mut().flatten().for_each(in_window);
     runs
 }
 
@@ -172,7 +181,7 @@ fn spectral_rows(result: &SweepResult, asked: &SpectrumOf) -> String {
         let (value, error) = (crossing.value, crossing.error);
         let value = caption::to_digits_of_error(value, error);
         let change = row.words(family)?.change;
-        let parameter = family.parameter();
+        let parameter = caption::parameter(family);
         Some(format!(
             "{}: {change}, {parameter} = {value} ± {error:.1e}.",
             crossing.label

@@ -110,7 +110,7 @@ pub(crate) fn branches(
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(in crate::figure) mod tests {
     use super::*;
     use crate::continuation::SolveReport;
     use crate::topology::FeatureErrors;
@@ -134,7 +134,7 @@ pub(super) mod tests {
     }
 
     /// A point with peaks at the given places; without a density for `None`.
-    pub(in crate::figure::parts) fn point(value: f64, peaks: Option<&[f64]>) -> Point {
+    pub(in crate::figure) fn point(value: f64, peaks: Option<&[f64]>) -> Point {
         let feature = |&at: &f64| Feature {
             kind: FeatureKind::Peak,
             position: vec![at],

@@ -6,12 +6,20 @@ use crate::figure::canvas::look::{DECADES, Look};
 use crate::figure::canvas::symbols;
 use crate::figure::parts::names;
 use crate::space::Axis;
-use crate::system::Family;
+use crate::system::{Family, Model};
 use crate::topology::Between;
 
 /// The caption of a figure of a sweep, from what is seen in it and what is marked in it; empty parts are left out.
 pub(crate) fn of_sweep(result: &SweepResult, seen: String, marked: &[String]) -> String {
-    let subject = [seen, system_of(&result.subject.family), method(result)];
+    let family = &result.subject.family;
+    let mut solved = result.points.iter();
+    let solved = solved.find(|point| !point.densities.is_empty());
+    let method = solved.map(|point| {
+        let watched = point.densities.iter();
+        let watched = watched.map(|one| (one.observable, one.density.axes.clone()));
+        solved_by(family, point.report.method, watched)
+    });
+    let subject = [seen, system_of(family), method.unwrap_or_default()];
     let parts = subject.iter().chain(marked);
     let parts: Vec<&str> = parts
         .filter(|part| !part.is_empty())
@@ -78,9 +86,9 @@ pub(crate) fn parameter(family: &Family) -> String {
 }
 
 /// A symbol without its markup.
-fn in_letters(symbol: &str) -> String {
+pub(crate) fn in_letters(symbol: &str) -> String {
     let raised = symbol.replace("^{2}", "²").replace("^{3}", "³");
-    raised.replace(['{', '}', '$'], "")
+    raised.replace(['{', '}', '$', '\\'], "")
 }
 
 /// A value to the second digit of its error.
@@ -103,9 +111,11 @@ pub(crate) fn system_of(family: &Family) -> String {
 }
 
 /// What ends the caption of a figure of a plane: the system, with the parameters that neither side of the plane
-/// changes, and what computed it.
-pub(crate) fn of_plane(family: &Family, second: &str) -> String {
-    format!("{} {}", system_in(family, second), version())
+/// changes, how it was solved, as [`solved_by`] says it (may be empty), and what computed it.
+pub(crate) fn of_plane(family: &Family, second: &str, solved_by: &str) -> String {
+    let parts = [system_in(family, second), solved_by.to_owned(), version()];
+    let parts = parts.into_iter().filter(|part| !part.is_empty());
+    parts.collect::<Vec<_>>().join(" ")
 }
 
 /// A parameter as figures have it, in plain letters.
@@ -116,7 +126,7 @@ pub(crate) fn parameter_named(family: &Family, name: &str) -> String {
 /// The system with its parameters but for one that is swept besides the family's own.
 fn system_in(family: &Family, second: &str) -> String {
     let model = family.model();
-    let equations = model.equations.join("; ");
+    let equations = equations_of(model);
     let fixed: Vec<String> = family
         .fixed()
         .filter(|(name, _)| *name != second)
@@ -130,26 +140,37 @@ fn system_in(family: &Family, second: &str) -> String {
     } else {
         format!(", with {}", fixed.join(", "))
     };
-    format!("System: {} ({equations}){fixed}.", model.title)
+    match model.title.as_str() {
+        "" => format!("System: {equations}{fixed}."),
+        title => format!("System: {title} ({equations}){fixed}."),
+    }
 }
 
-/// The method and the cells.
-fn method(result: &SweepResult) -> String {
-    let Some(solved) = result
-        .points
-        .iter()
-        .find(|point| !point.densities.is_empty())
-    else {
-        return String::new();
+/// The equations in the symbols of the figure: typed ones typeset, and what their noises are.
+fn equations_of(model: &Model) -> String {
+    let Some(typed) = model.typed() else {
+        return model.equations.join("; ");
     };
-    let family = &result.subject.family;
-    let mut axes: Vec<(usize, &Axis)> = Vec::new();
-    for estimated in &solved.densities {
-        let numbers = match estimated.observable {
-            Observable::Marginal(axis) => vec![axis],
-            Observable::Joint(first, second) => vec![first, second],
-        };
-        for (number, axis) in numbers.into_iter().zip(&estimated.density.axes) {
+    let (mut lines, source) = (typed.typeset(), typed.source());
+    let typed = source.equations().len() + source.definitions().len();
+    lines.extend(model.equations.iter().skip(typed).cloned());
+    let equations = lines.join("; ");
+    let mut parameters = model.parameters.iter();
+    match parameters.any(|one| in_letters(&one.symbol) == "σ²") {
+        true => equations.replace("σ₂", "σ²"),
+        false => equations,
+    }
+}
+
+/// The method and the cells of what is watched.
+pub(crate) fn solved_by(
+    family: &Family,
+    method: &str,
+    watched: impl IntoIterator<Item = (Observable, Vec<Axis>)>,
+) -> String {
+    let mut axes: Vec<(usize, Axis)> = Vec::new();
+    for (observable, own) in watched {
+        for (number, axis) in observable.axes().into_iter().zip(own) {
             if axes.iter().all(|(known, _)| *known != number) {
                 axes.push((number, axis));
             }
@@ -165,11 +186,7 @@ fn method(result: &SweepResult) -> String {
         )
     });
     let cells: Vec<String> = cells.collect();
-    format!(
-        "Method: {}; cells: {}.",
-        solved.report.method,
-        cells.join(", ")
-    )
+    format!("Method: {method}; cells: {}.", cells.join(", "))
 }
 
 /// What is drawn between the cells of some observables.

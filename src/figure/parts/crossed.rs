@@ -1,5 +1,6 @@
 //! Sweeps over one parameter in the figure of a plane: their lines, and the rows that they located, with errors.
 
+use super::caption;
 use super::names::symbol_of;
 use crate::continuation::BifurcationStatus;
 use crate::continuation::curve::{Plane, RowInPlane, SweepInPlane};
@@ -112,11 +113,14 @@ impl Crossed<'_> {
 
     /// What the caption says of them; nothing without any.
     pub(crate) fn caption(&self) -> String {
-        let [first, second] = self.plane.sides();
+        let sides = self.plane.sides();
+        let [first, second] = sides
+            .each_ref()
+            .map(|side| caption::parameter_named(self.family, &side.parameter));
         let words = |sweep: &SweepInPlane| {
             let (swept, held) = match sweep.side {
-                0 => (&first.parameter, &second.parameter),
-                _ => (&second.parameter, &first.parameter),
+                0 => (&first, &second),
+                _ => (&second, &first),
             };
             format!("over {swept} at {held} = {}", symbols::rounded(sweep.held))
         };

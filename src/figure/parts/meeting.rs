@@ -35,23 +35,52 @@ struct End {
     is_below: bool,
 }
 
-impl End {
-    /// The way from it to where it meets others: as a power of the distance to the change, which its last two places
-    /// tell.
-    fn way(&self, meeting: (f64, f64)) -> Vec<(f64, f64)> {
-        let off = self.place.1 - meeting.1;
-        let power = self.before.and_then(|before| {
-            let times = (before.1 - meeting.1) / off;
-            let longer = (before.0 - meeting.0) / (self.place.0 - meeting.0);
-            (times > 1.0 && longer > 1.0).then(|| times.ln() / longer.ln())
-        });
-        let power = power.unwrap_or(ROOT).clamp(POWERS.0, POWERS.1);
-        let step = |number: usize| {
-            let share = number as f64 / STEPS as f64;
-            let value = self.place.0 + share * (meeting.0 - self.place.0);
-            (value, meeting.1 + off * (1.0 - share).powf(power))
-        };
-        (1..=STEPS).map(step).collect()
+/// The way from the end of a line to where it meets others: as a power of the distance to the change, which its last
+/// two places tell.
+fn way(
+    place: (f64, f64),
+    before: Option<(f64, f64)>,
+    meeting: (f64, f64),
+) -> impl Iterator<Item = (f64, f64)> {
+    let off = place.1 - meeting.1;
+    let power = before.and_then(|before| {
+        let times = (before.1 - meeting.1) / off;
+        let longer = (before.0 - meeting.0) / (place.0 - meeting.0);
+        (times > 1.0 && longer > 1.0).then(|| times.ln() / longer.ln())
+    });
+    let power = power.unwrap_or(ROOT).clamp(POWERS.0, POWERS.1);
+    (1..=STEPS).map(move |number| {
+        let share = number as f64 / STEPS as f64;
+        let value = place.0 + share * (meeting.0 - place.0);
+        (value, meeting.1 + off * (1.0 - share).powf(power))
+    })
+}
+
+/// Leads lines, each of ascending values, on to the changes at which they begin or end as one of a pair of which
+/// nothing else is known, so that their last two places alone tell where: they go like the root of the distance.
+/// `values` are those that were solved, ascending; a line that has places on both sides of a change goes on.
+pub(crate) fn meet_births(lines: &mut [Vec<(f64, f64)>], changes: &[f64], values: &[f64]) {
+    for &change in changes {
+        let after = values.partition_point(|value| *value <= change);
+        let beside = [after.checked_sub(1), Some(after)];
+        let beside = beside.map(|index| values.get(index?).copied());
+        for line in lines.iter_mut() {
+            let to_birth = |place: (f64, f64), before: (f64, f64)| {
+                let [near, far] = [place, before].map(|one| (one.0 - change).abs().sqrt());
+                let meeting = (far * place.1 - near * before.1) / (far - near);
+                way(place, Some(before), (change, meeting))
+            };
+            match line[..] {
+                [.., before, last] if Some(last.0) == beside[0] => {
+                    line.extend(to_birth(last, before))
+                }
+                [first, after, ..] if Some(first.0) == beside[1] => {
+                    let ahead: Vec<(f64, f64)> = to_birth(first, after).collect();
+                    line.splice(0..0, ahead.into_iter().rev());
+                }
+                _ => {}
+            }
+        }
     }
 }
 
@@ -167,7 +196,7 @@ pub(crate) fn meet(
             for end in group {
                 let branch = &mut branches[end.branch.0][end.branch.1];
                 let mut places = around.on_side(branch, end.is_below);
-                places.extend(end.way((change, place)));
+                places.extend(way(end.place, end.before, (change, place)));
                 places.sort_by(|a, b| a.0.total_cmp(&b.0));
                 branch.places = places;
             }
@@ -188,6 +217,26 @@ pub(crate) fn meet(
 mod tests {
     use super::*;
     use crate::figure::parts::branches::{branches, tests::point};
+
+    #[test]
+    fn lines_are_led_on_to_where_they_are_born_like_a_root() {
+        let values: Vec<f64> = (0..6).map(f64::from).collect();
+        let frequency = |value: f64| 0.7 + 0.5 * (value - 1.6).sqrt();
+        let born = |&value: &f64| (value > 1.6).then(|| (value, frequency(value)));
+        let dies = |&value: &f64| (value < 1.6).then_some((value, 0.3));
+        let mut lines: [Vec<(f64, f64)>; 3] = [
+            values.iter().filter_map(born).collect(),
+            values.iter().filter_map(dies).collect(),
+            values.iter().map(|&value| (value, 1.0)).collect(),
+        ];
+        meet_births(&mut lines, &[1.6], &values);
+        assert_eq!(lines[0].len(), 4 + STEPS);
+        for (value, place) in &lines[0] {
+            assert!((place - frequency(*value)).abs() < 1e-12, "{value} {place}");
+        }
+        assert_eq!((lines[0][0].0, lines[1][1 + STEPS]), (1.6, (1.6, 0.3)));
+        assert!(lines[0].is_sorted_by(|a, b| a.0 < b.0) && lines[2].len() == values.len());
+    }
 
     #[test]
     fn branches_meet_where_the_change_is() {

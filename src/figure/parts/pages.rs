@@ -53,6 +53,7 @@ fn on_pages(
         draw(&Print {
             look: Look { tall, ..print.look },
             part: (number, pages),
+            solved_by: print.solved_by.clone(),
             ..*print
         })
     };

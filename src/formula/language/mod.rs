@@ -12,7 +12,7 @@ mod token;
 
 pub use fault::{Fault, FormulaError};
 pub use function::Function;
-pub(crate) use spelling::{canonical_name, typeset_name};
+pub(crate) use spelling::{canonical_name, subscript_digit, typeset_name};
 
 pub(crate) use grammar::parse;
 pub(crate) use spelling::check_name;

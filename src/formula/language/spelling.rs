@@ -62,7 +62,8 @@ fn greek_name(letter: char) -> Option<&'static str> {
     Some(entry.1)
 }
 
-fn subscript_digit(character: char) -> Option<char> {
+/// The digit that a subscript character stands for.
+pub(crate) fn subscript_digit(character: char) -> Option<char> {
     let digit = SUBSCRIPTS.iter().position(|&sub| sub == character)?;
     char::from_digit(digit as u32, 10)
 }

@@ -45,11 +45,11 @@ use KeyDefault::{OfOptions, OfSection, Required, Rule};
 /// The order is the one in which a file is best read, and in which it is written.
 #[rustfmt::skip]
 pub(in crate::sweep_file) static KEYS: &[Key] = &[
-    key("title", Kind::Printable, Rule("the model's title and the swept parameter"), optional!(title),
+    key("title", Kind::Printable, Rule("the model's title, if it has one, and the swept parameter"), optional!(title),
         "Title of the run, used in tables and figures."),
     key("system.model", Kind::Model, Rule("equations of your own, in `system.equations`"), optional!(model),
         "A built-in model; `pbif systems` lists them, `pbif systems NAME` shows one."),
-    key("system.title", Kind::Printable, Rule("`title`"), optional!(equations.title),
+    key("system.title", Kind::Printable, Rule("`title`, if that is given"), optional!(equations.title),
         "Name of a system of your own, in words."),
     key("system.equations.<axis>", Kind::Formula, Rule("a built-in model, by `system.model`"), formulas!(drift),
         "Right side of the equation of an axis, without noise; one an axis, 1 to 4 of them, which also gives their order. docs/formulas.md has the language."),

@@ -214,7 +214,7 @@ fn source(
     parameters: Vec<ParameterDescription>,
 ) -> TypedModel {
     let title = equations.title.as_ref().or(draft.title.as_ref());
-    let title = title.map_or("equations of a sweep file", String::as_str);
+    let title = title.map_or("", String::as_str);
     let axes = equations.drift.iter().map(|(axis, _)| axis.as_str());
     let mut model = TypedModel::new(NAME, title, axes).with_parameters(parameters);
     for (axis, drift) in &equations.drift {

@@ -140,9 +140,11 @@ impl Settings {
             return Err(reader.into_report());
         }
         let (model, parameter) = (family.model(), family.parameter());
-        let title = || match &mapped {
-            Some(map) => format!("{}, map of {parameter} and {}", model.title, map.parameter),
-            None => format!("{}, sweep of {parameter}", model.title),
+        let title = || match (&mapped, model.title.as_str()) {
+            (Some(map), "") => format!("Map of {parameter} and {}", map.parameter),
+            (None, "") => format!("Sweep of {parameter}"),
+            (Some(map), of) => format!("{of}, map of {parameter} and {}", map.parameter),
+            (None, of) => format!("{of}, sweep of {parameter}"),
         };
         Ok(Self {
             title: draft.title.clone().unwrap_or_else(title),
