@@ -26,15 +26,6 @@ pub fn profile(
 ) -> Option<Profile> {
     let line = Partition::new(system, axis, found.ends)?;
     let samples = line.samples();
-        let t = turns(&samples);
-        eprintln!(
-            "parts {} samples {} turns {} {:?}",
-            line.parts.len(),
-            samples.len(),
-            t.len(),
-            t.iter().rev().take(4).collect::<Vec<_>>()
-        );
-    }
     Some(Profile {
         extrema: line.extrema(&samples, found.log_integral),
         turns: turns(&samples),
@@ -215,7 +206,10 @@ mod tests {
             let profile = profile(system.as_ref(), &axis, &masses, None).unwrap();
             let places: Vec<f64> = profile.turns.iter().map(|one| one.place).collect();
             assert_eq!(places.len(), usize::from(turn.is_some()), "{places:?}");
-            let off = places.first().zip(turn).map_or(0.0, |(place, turn)| place - turn);
+            let off = places
+                .first()
+                .zip(turn)
+                .map_or(0.0, |(place, turn)| place - turn);
             assert!(off.abs() < 1e-6, "{places:?}");
             // More parts than ten a cell are no more digits.
             let line = Partition::new(system.as_ref(), &axis, masses.ends).unwrap();
