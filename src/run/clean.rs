@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::archive::PREVIOUS;
-use super::atomic::clear_unfinished;
 use super::lock::FolderLock;
+use super::placing::clear_unfinished;
 use super::{Ending, Layout, RunError, RunSummary, checksums, curve, find_runs};
 use crate::UNFINISHED;
 
@@ -114,9 +114,9 @@ pub(crate) fn remove_run(path: &Path) -> Result<Removal, RunError> {
     }
     let lock = FolderLock::take(path)?;
     let mut removal = Removal::default();
+    clear_unfinished(path, &[]);
     remove_left(path, Layout::SWEEP, &mut removal)?;
     remove_curves(&path.join(curve::FOLDER), &mut removal)?;
-    clear_unfinished(path, &[]);
     drop(lock);
     removal.keep_foreign(path);
     // Only empty folders can be removed so.
@@ -143,9 +143,9 @@ fn remove_curves(folder: &Path, removal: &mut Removal) -> Result<(), RunError> {
             continue;
         }
         let lock = FolderLock::take(&path)?;
+        clear_unfinished(&path, &[]);
         remove_curves(&path.join(PREVIOUS), removal)?;
         remove_left(&path, ours, removal)?;
-        clear_unfinished(&path, &[]);
         drop(lock);
         // Only empty folders can be removed so.
         let _ = std::fs::remove_dir(&path);

@@ -81,6 +81,7 @@ mod map_shards;
 mod names;
 mod number;
 mod place;
+mod placing;
 mod plane_file;
 mod point_densities;
 mod points_table;

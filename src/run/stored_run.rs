@@ -8,6 +8,7 @@ use serde::Deserialize;
 use super::checks::read_checks;
 use super::manifest::{Typed, hash};
 use super::place::{FIGURES, folder_in, read};
+use super::placing::finish_after_kill;
 use super::point_densities::PointDensities;
 use super::points_table::read_points;
 use super::sealing::seal_after_kill;
@@ -63,6 +64,7 @@ impl StoredRun {
     /// [`RunError::NotARun`], [`RunError::Read`], [`RunError::Manifest`], [`RunError::Version`],
     /// [`RunError::Hash`]; [`RunError::Damaged`] by its checksums.
     pub fn open(path: &Path) -> Result<Self, RunError> {
+        finish_after_kill(path);
         let file = path.join("run.json");
         if !file.is_file() {
             return Err(RunError::NotARun {
