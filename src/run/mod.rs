@@ -138,6 +138,7 @@ pub use manifest::PhaseSeconds;
 pub(crate) use map::map_files;
 pub(crate) use map_shards::{MapShards, map_shard_file};
 pub use names::check_names;
+pub(crate) use names::check_names_compared;
 pub(crate) use number::{format_number, format_with_error};
 
 pub use plane_file::{StoredPlane, StoredPlaneContent};
