@@ -148,6 +148,9 @@ pub(super) fn diagnostic(error: &RunError) -> Diagnostic {
             .remedy("`pbif sweep FILE --set detect.marginals=…` or `detect.joint=…` solves and stores more"),
         RunError::OtherFormula { .. } => finding
             .remedy("give the quantity another name; `pbif sweep FILE` solves and stores its density"),
+        RunError::Memory { .. } => {
+            finding.remedy("a higher limit (`ulimit -v`, or that of the batch job)")
+        }
         RunError::Version { .. } => {
             finding.remedy(format!("use the version that made the run, or {solve}"))
         }

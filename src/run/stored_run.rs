@@ -224,7 +224,8 @@ impl StoredRun {
     ///
     /// # Errors
     /// [`RunError::Read`], [`RunError::Column`] and [`RunError::Row`] for the table; [`RunError::ReadStore`],
-    /// [`RunError::NotStored`], [`RunError::Cells`] and [`RunError::NoDensity`] for the densities.
+    /// [`RunError::NotStored`], [`RunError::Cells`], [`RunError::NoDensity`] and [`RunError::Memory`] for the
+    /// densities.
     pub fn points(
         &self,
         subject: &Subject,
@@ -254,6 +255,8 @@ impl StoredRun {
             return self.check_sums().map(|()| points);
         }
         let densities = PointDensities::open(&self.path, complete, subject, (space, bins))?;
+        let count = points.iter().filter(|point| has_density(point)).count();
+        densities.check_room(&self.path, count)?;
         let solved = points.par_iter_mut();
         let solved = solved.filter(|point| has_density(point));
         let results: Vec<Result<(), RunError>> =
