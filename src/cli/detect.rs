@@ -56,8 +56,12 @@ fn write(stored: &Stored, detect_seconds: f64, staged: &StagedRun) -> Result<(),
     staged.write(result)?;
     manifest.seconds.tables = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
-    let figures = draw_sweep(spec, result);
-    write_figures(&figures, &settings.figures.formats, &staged.figures())?;
+    let formats = &settings.figures.formats;
+    let figures = match formats.is_empty() {
+        true => Vec::new(),
+        false => draw_sweep(spec, result),
+    };
+    write_figures(&figures, formats, &staged.figures())?;
     manifest.seconds.figures = clock.elapsed().as_secs_f64();
     manifest.points = result.points.len();
     manifest.largest_distance = result.largest_distance();

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{CommandError, tell};
 use crate::continuation::SweepResult;
-use crate::run::{RunError, StoredRun};
+use crate::run::{RunError, StoredRun, check_names};
 use crate::sweep_file::{Diagnostic, Report, Sweep, SweepFile, list};
 
 /// An option of the command line, and the `KEY=VALUE` that it stands for.
@@ -55,7 +55,9 @@ impl Stored {
         for (option, setting) in overrides {
             file.set_all(option, [setting]);
         }
-        let spec = file.validate()?.fixed()?;
+        let settings = file.validate()?;
+        check_names(&settings)?;
+        let spec = settings.fixed()?;
         let result = run.detect(&spec)?;
         let stored = Self { run, spec, result };
         if !quiet {
@@ -146,6 +148,9 @@ pub(super) fn diagnostic(error: &RunError) -> Diagnostic {
             .remedy("`pbif sweep FILE --set detect.marginals=…` or `detect.joint=…` solves and stores more"),
         RunError::OtherFormula { .. } => finding
             .remedy("give the quantity another name; `pbif sweep FILE` solves and stores its density"),
+        RunError::Memory { .. } => {
+            finding.remedy("a higher limit (`ulimit -v`, or that of the batch job)")
+        }
         RunError::Version { .. } => {
             finding.remedy(format!("use the version that made the run, or {solve}"))
         }

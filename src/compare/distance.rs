@@ -1,8 +1,8 @@
 //! Distances between two estimated densities, with what is uncertain about them.
 
 use crate::density::{
-    Density, DensityError, EstimatedDensity, Variants, hellinger_of_masses, total_variation,
-    total_variation_of_masses,
+    Density, DensityError, EstimatedDensity, Variants, hellinger_of_masses, negative_part,
+    total_variation, total_variation_of_masses,
 };
 
 /// A distance with its uncertainty. A distance cannot be negative, so noise alone makes one: only what exceeds `noise`
@@ -14,7 +14,7 @@ pub struct Distance {
     /// Its standard error by sampling (jackknife).
     pub error: f64,
     /// Largest change that the stated grid errors can make: the distances between the two schemes of each density that
-    /// has two.
+    /// has two, and, of the total variation, the negative parts of both densities, which count as zero.
     pub systematic: f64,
     /// Distance to be expected from sampling noise alone, were both densities the same.
     pub noise: f64,
@@ -72,8 +72,10 @@ pub fn distances(
             noise,
         })
     };
+    let mut variation = distance(&total_variation_of_masses, variation_noise(&variance))?;
+    variation.systematic += negative_part(&p) + negative_part(&q);
     Ok(Distances {
-        total_variation: distance(&total_variation_of_masses, variation_noise(&variance))?,
+        total_variation: variation,
         hellinger: distance(&hellinger_of_masses, hellinger_noise(&p, &q, &variance))?,
     })
 }
@@ -272,6 +274,24 @@ mod tests {
         let found = distances(&one, &known(&q), false).unwrap().total_variation;
         assert!((found.systematic - found.value).abs() < 1e-12);
         assert!(!found.is_significant());
+    }
+
+    #[test]
+    fn negative_values_count_as_zero_and_are_a_part_of_the_error() {
+        // Far apart, each with a tenth of all mass below zero beside it.
+        let with_trough = |mean: f64| {
+            let (all, beside) = (gaussian(mean), gaussian(mean + 1.0));
+            let pairs = all.iter().zip(&beside);
+            known(&pairs.map(|(p, q)| 1.5 * p - 0.5 * q).collect::<Vec<_>>())
+        };
+        let (one, other) = (with_trough(-3.0), with_trough(3.0));
+        let found = distances(&one, &other, false).unwrap().total_variation;
+        let below = |one: &EstimatedDensity| -> f64 {
+            one.density.masses().iter().map(|mass| mass.min(0.0)).sum()
+        };
+        assert!(below(&one) < -0.05 && found.value <= 1.0, "{found:?}");
+        let negative = -below(&one) - below(&other);
+        assert!((found.systematic - negative).abs() < 1e-6, "{found:?}");
     }
 
     #[test]

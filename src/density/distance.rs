@@ -13,13 +13,23 @@ pub fn hellinger(first: &Density, second: &Density) -> Result<f64, DensityError>
     hellinger_of_masses(&first, &second)
 }
 
-/// Total-variation distance ½ ∫ |p - q| of two densities, 0 to 1; negative values add to it.
+/// Total-variation distance ½ ∫ |p - q| of two densities, 0 to 1. Negative values count as zero, and what is left is
+/// normalised again.
 ///
 /// # Errors
 /// [`DensityError::DifferentAxes`] unless both have the same axes; [`DensityError::Length`].
 pub fn total_variation(first: &Density, second: &Density) -> Result<f64, DensityError> {
     let (first, second) = common_masses(first, second)?;
     total_variation_of_masses(&first, &second)
+}
+
+/// ½ ∫ |p - q| of two densities as they are, whatever their signs and sums.
+///
+/// # Errors
+/// [`DensityError::DifferentAxes`] unless both have the same axes; [`DensityError::Length`].
+pub(crate) fn half_difference(first: &Density, second: &Density) -> Result<f64, DensityError> {
+    let (first, second) = common_masses(first, second)?;
+    Ok(half_sum(&first, &second))
 }
 
 /// Hellinger distance of two mass vectors over the same cells, 0 to 1. Negative values count as zero, and what is left
@@ -30,27 +40,39 @@ pub fn total_variation(first: &Density, second: &Density) -> Result<f64, Density
 pub fn hellinger_of_masses(first: &[f64], second: &[f64]) -> Result<f64, DensityError> {
     check_length(second, first.len())?;
     // The sum of squares, not 1 - Σ √(pq), which would lose half the digits of a small distance.
-    let [first, second] = [first, second].map(roots);
+    let [first, second] = [first, second].map(shares);
     let cells = first.iter().zip(&second);
-    let sum: f64 = cells.map(|(p, q)| (p - q).powi(2)).sum();
+    let sum: f64 = cells.map(|(p, q)| (p.sqrt() - q.sqrt()).powi(2)).sum();
     Ok((0.5 * sum).sqrt().min(1.0))
 }
 
-/// Square roots of the shares of all positive mass.
-fn roots(masses: &[f64]) -> Vec<f64> {
-    let positive = masses.iter().map(|mass| mass.max(0.0));
-    let sum: f64 = positive.clone().sum();
-    positive.map(|mass| (mass / sum).sqrt()).collect()
-}
-
-/// Total-variation distance ½ Σ |p - q| of two mass vectors over the same cells, each Σ = 1.
+/// Total-variation distance ½ Σ |p - q| of two mass vectors over the same cells, 0 to 1. Negative values count as zero,
+/// and what is left is normalised again.
 ///
 /// # Errors
 /// [`DensityError::Length`] when they differ in length.
 pub fn total_variation_of_masses(first: &[f64], second: &[f64]) -> Result<f64, DensityError> {
     check_length(second, first.len())?;
+    let [first, second] = [first, second].map(shares);
+    Ok(half_sum(&first, &second).min(1.0))
+}
+
+/// The negative part of masses that sum to one: so far they are from those that distances take them for, as total
+/// variation.
+pub(crate) fn negative_part(masses: &[f64]) -> f64 {
+    masses.iter().map(|mass| (-mass).max(0.0)).sum()
+}
+
+/// The shares of all positive mass.
+fn shares(masses: &[f64]) -> Vec<f64> {
+    let positive = masses.iter().map(|mass| mass.max(0.0));
+    let sum: f64 = positive.clone().sum();
+    positive.map(|mass| mass / sum).collect()
+}
+
+fn half_sum(first: &[f64], second: &[f64]) -> f64 {
     let cells = first.iter().zip(second);
-    Ok(0.5 * cells.map(|(p, q)| (p - q).abs()).sum::<f64>())
+    0.5 * cells.map(|(p, q)| (p - q).abs()).sum::<f64>()
 }
 
 /// Masses of two densities on the same cells.
@@ -109,6 +131,9 @@ mod tests {
         let (over, under) = ([1.5, -0.5], [-0.5, 1.5]);
         assert_eq!(hellinger_of_masses(&over, &under), Ok(1.0));
         assert_eq!(hellinger_of_masses(&over, &[1.0, 0.0]), Ok(0.0));
+        assert_eq!(total_variation_of_masses(&over, &under), Ok(1.0));
+        assert_eq!(total_variation_of_masses(&over, &[1.0, 0.0]), Ok(0.0));
+        assert_eq!((negative_part(&over), negative_part(&p)), (0.5, 0.0));
         assert_eq!(total_variation_of_masses(&q, &q), Ok(0.0));
     }
 

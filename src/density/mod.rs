@@ -31,6 +31,7 @@ pub(crate) use discretisation::WIGGLE;
 pub(crate) use discretisation::{
     errors_by_schemes, estimate_from_difference, estimate_from_second,
 };
+pub(crate) use distance::{half_difference, negative_part};
 pub use distance::{hellinger, hellinger_of_masses, total_variation, total_variation_of_masses};
 pub use moments::moments;
 pub(crate) use moments::{EstimatedMoments, Roughness, excess_variances, jackknife};

@@ -5,7 +5,9 @@ use std::time::{Duration, Instant};
 use super::{Context, Job, JobError, Outcome, Progress};
 use crate::compare::{self, CompareError, CompareObserver, Comparison, Solved, Task};
 use crate::figure::{Figure, Figures};
-use crate::run::{ComparedRun, JobFolder, Journal, Layout, RunError, compare_files};
+use crate::run::{
+    ComparedRun, JobFolder, Journal, Layout, RunError, check_names_compared, compare_files,
+};
 use crate::sweep_file::{Diagnostic, MethodKind, Report, Sweep};
 
 /// What took less, and has no value by all methods yet, is not worth a file that somebody has to remove.
@@ -24,8 +26,9 @@ impl<'a> CompareJob<'a> {
     /// The comparison at the values of `figures.at`.
     ///
     /// # Errors
-    /// A report where there are none.
+    /// A report where there are none, or two columns of a table would have one name.
     pub fn new(sweep: &'a Sweep) -> Result<Self, Report> {
+        check_names_compared(&sweep.settings)?;
         if sweep.settings.figures.at.is_empty() {
             let found = Diagnostic::new("`figures.at` is empty: there is no value to compare at")
                 .remedy("leave `figures.at` out, or give values of the swept parameter");

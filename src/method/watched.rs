@@ -10,7 +10,7 @@ use super::{MethodError, Problem};
 use crate::density::{
     Coordinate, Detail, EstimatedDensity, EstimatedMoments, Moments, NEGLIGIBLE_OF_QUANTITIES,
     Observable, Projection, QuantityMoments, Roughness, Structure, estimate_from_difference,
-    estimate_from_second, estimate_projected, moments, phase_factors, times, total_variation,
+    estimate_from_second, estimate_projected, half_difference, moments, phase_factors, times,
 };
 use crate::space::CellSpace;
 use crate::system::{BoundQuantity, LANES, SwitchingSurface, System, symmetry_over_a_period};
@@ -148,7 +148,7 @@ impl Maps {
                 None => axes.filter(carried).collect(),
             };
             if let (false, Some((all, Some(fewer)))) = (carried.is_empty(), maps) {
-                let change = total_variation(&all.density(masses)?, &fewer.density(masses)?)?;
+                let change = half_difference(&all.density(masses)?, &fewer.density(masses)?)?;
                 changes.extend(carried.into_iter().map(|axis| (axis, change)));
             }
         }

@@ -86,33 +86,6 @@ fn write(path: &Path, bytes: &[u8], durably: bool) -> Result<File, RunError> {
     file.persist(path).map_err(|error| failed(error.error))
 }
 
-/// Removes what a killed process has left in the making in a run, which nobody else writes to: files in its folder and
-/// below its folders `own`, and rooms in its folder, in which nothing has its only place (`Staging::take_place`). Other
-/// folders are a user's.
-pub(super) fn clear_unfinished(run: &Path, own: &[&str]) {
-    let mut open = vec![run.to_owned()];
-    while let Some(folder) = open.pop() {
-        for entry in std::fs::read_dir(&folder).into_iter().flatten().flatten() {
-            let name = entry.file_name();
-            let name = name.to_string_lossy();
-            let is_unfinished = name.starts_with(UNFINISHED);
-            match entry.file_type() {
-                // What cannot be removed is in nobody's way.
-                Ok(kind) if kind.is_dir() && folder == run && is_unfinished => {
-                    let _ = std::fs::remove_dir_all(entry.path());
-                }
-                Ok(kind) if kind.is_dir() && (folder != run || own.contains(&&*name)) => {
-                    open.push(entry.path());
-                }
-                Ok(kind) if kind.is_file() && is_unfinished => {
-                    let _ = std::fs::remove_file(entry.path());
-                }
-                _ => {}
-            }
-        }
-    }
-}
-
 /// Makes the names in a folder durable, where the system lets folders be synchronised.
 pub(super) fn sync_folder(folder: &Path) {
     if let Ok(folder) = File::open(folder) {
@@ -249,27 +222,5 @@ mod tests {
         write_below(&home, &file, b"1").unwrap();
         write_below(&home, &file, b"2").unwrap();
         assert_eq!(std::fs::read(file).unwrap(), b"2");
-    }
-
-    #[test]
-    fn what_a_killed_process_left_is_cleared_and_nothing_else() {
-        let run = tempfile::tempdir().unwrap();
-        let put = |name: &str| {
-            let path = run.path().join(name);
-            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-            std::fs::write(&path, "1").unwrap();
-            path
-        };
-        let left = [
-            ".pbif-a1",
-            ".pbif-room/kept/points.csv",
-            "densities.zarr/p_x/c/.pbif-b2",
-            "figures/.pbif-c3",
-        ];
-        let left = left.map(put);
-        let kept = ["points.csv", ".hidden", "notes/.pbif-mine", "figures/x.svg"].map(put);
-        clear_unfinished(run.path(), &["densities.zarr", "figures"]);
-        assert!(left.iter().all(|path| !path.exists()));
-        assert!(kept.iter().all(|path| path.exists()));
     }
 }

@@ -1,10 +1,11 @@
 //! Removing runs: what pbif has written of them, and nothing else.
 
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use super::archive::PREVIOUS;
-use super::atomic::clear_unfinished;
 use super::lock::FolderLock;
+use super::placing::clear_unfinished;
 use super::{Ending, Layout, RunError, RunSummary, checksums, curve, find_runs};
 use crate::UNFINISHED;
 
@@ -86,6 +87,8 @@ pub(crate) enum Stays {
     Foreign,
     /// It holds something else than the run left.
     Changed,
+    /// It was written after all that the run has left, and there is no checksum of it.
+    Later,
     /// The system does not let it go.
     Refused(std::io::Error),
 }
@@ -95,6 +98,9 @@ impl std::fmt::Display for Stays {
         match self {
             Self::Foreign => formatter.write_str("not of the run"),
             Self::Changed => formatter.write_str("changed since the run ended"),
+            Self::Later => {
+                formatter.write_str("written after the run's last word, by whom is not known")
+            }
             Self::Refused(error) => write!(formatter, "cannot be removed: {error}"),
         }
     }
@@ -114,9 +120,9 @@ pub(crate) fn remove_run(path: &Path) -> Result<Removal, RunError> {
     }
     let lock = FolderLock::take(path)?;
     let mut removal = Removal::default();
+    clear_unfinished(path, &[]);
     remove_left(path, Layout::SWEEP, &mut removal)?;
     remove_curves(&path.join(curve::FOLDER), &mut removal)?;
-    clear_unfinished(path, &[]);
     drop(lock);
     removal.keep_foreign(path);
     // Only empty folders can be removed so.
@@ -143,9 +149,9 @@ fn remove_curves(folder: &Path, removal: &mut Removal) -> Result<(), RunError> {
             continue;
         }
         let lock = FolderLock::take(&path)?;
+        clear_unfinished(&path, &[]);
         remove_curves(&path.join(PREVIOUS), removal)?;
         remove_left(&path, ours, removal)?;
-        clear_unfinished(&path, &[]);
         drop(lock);
         // Only empty folders can be removed so.
         let _ = std::fs::remove_dir(&path);
@@ -155,10 +161,12 @@ fn remove_curves(folder: &Path, removal: &mut Removal) -> Result<(), RunError> {
 }
 
 /// Removes the files of a job, those that its checksums name first, the one that marks the folder last. A job that was
-/// killed has no checksums: of it go tables, journal, and what is named as parts of an array store are.
+/// killed has no checksums: of it go journal, what is named as parts of an array store are, and tables that are no
+/// later than the file that marks the folder, which a job writes anew after each of its tables.
 fn remove_left(folder: &Path, layout: Layout, removal: &mut Removal) -> Result<(), RunError> {
     let sums = checksums::read(folder)?;
     let manifest = layout.manifest();
+    let marked = written(&folder.join(manifest));
     let mut files = Vec::new();
     for entry in layout.entries.iter().rev() {
         list(folder, entry, &mut files);
@@ -173,8 +181,12 @@ fn remove_left(folder: &Path, layout: Layout, removal: &mut Removal) -> Result<(
             _ if name == layout.part || is_unfinished(name) => removal.remove(path),
             Some(Some(sum)) if checksums::is_whole(&path, sum) => removal.remove(path),
             Some(Some(_)) => removal.stays.push((path, Stays::Changed)),
-            None if layout.entries.contains(&name.as_str()) || is_of_store(name) => {
-                removal.remove(path);
+            None if is_of_store(name) => removal.remove(path),
+            None if layout.entries.contains(&name.as_str()) => {
+                match written(&path).is_some_and(|at| Some(at) <= marked) {
+                    true => removal.remove(path),
+                    false => removal.stays.push((path, Stays::Later)),
+                }
             }
             _ => {}
         }
@@ -194,6 +206,11 @@ fn remove_left(folder: &Path, layout: Layout, removal: &mut Removal) -> Result<(
     let folders = layout.entries.iter().map(|entry| folder.join(entry));
     folders.for_each(|entry| remove_empty(&entry));
     Ok(())
+}
+
+/// When a file was last written.
+fn written(path: &Path) -> Option<SystemTime> {
+    path.symlink_metadata().ok()?.modified().ok()
 }
 
 /// Names of a file, or of the files below a folder, without following links.

@@ -96,6 +96,14 @@ pub enum RunError {
         /// How many the run left.
         wanted: usize,
     },
+    /// More densities than there is memory for.
+    #[error("the densities in {} take {bytes} of memory, and the system gives this process less", path.display())]
+    Memory {
+        /// The run.
+        path: PathBuf,
+        /// What they take, with what is read and drawn beside them.
+        bytes: String,
+    },
     /// A stored density that is not finite.
     #[error("{}: the density of `{observable}` at {parameter} = {value} has values that are missing or no numbers", path.display())]
     NotFinite {

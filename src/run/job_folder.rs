@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use super::atomic::{clear_unfinished, sync_all, write_below};
+use super::atomic::{sync_all, write_below};
 use super::checksums::Checked;
 use super::lock::FolderLock;
 use super::place::{self, FIGURES, folder_in};
+use super::placing::{clear_unfinished, finish_after_kill};
 use super::staging::Staging;
 use super::{Ending, Journal, Layout, RunError, checksums, research_object};
 
@@ -19,6 +20,7 @@ const OWN: [&str; 2] = ["densities.zarr", FIGURES];
 /// [`RunError::NotARun`] where it left nothing; [`RunError::Read`]; [`RunError::Checksums`] when the checksums are not
 /// readable themselves.
 pub fn check_folder(folder: &Path) -> Result<Option<Checked>, RunError> {
+    finish_after_kill(folder);
     match Layout::of(folder) {
         Some(layout) => checksums::check(folder, layout.entries, &[]),
         None => Err(RunError::NotARun {
@@ -86,7 +88,7 @@ impl JobFolder {
         } else {
             let staging = Staging::new(home, layout.entries)?.with(layout.about)?;
             if layout.grows {
-                let placed = staging.take_place(&[])?;
+                let placed = staging.take_place(&[], &[])?;
                 kept = placed.kept;
                 Destination::There { lock: placed.lock }
             } else {
@@ -199,7 +201,11 @@ impl JobFolder {
                     checksums::write(&path, self.layout.entries)?;
                 }
                 sync_all(&[path])?;
-                staging.take_place(&[])?.files
+                let done = match ending {
+                    Ending::Complete => &[self.layout.part][..],
+                    _ => &[],
+                };
+                staging.take_place(&[], done)?.files
             }
             Destination::There { .. } => {
                 research_object::write(&path)?;

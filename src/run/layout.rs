@@ -5,6 +5,7 @@ use std::path::Path;
 use super::archive::Entries;
 use super::journal::differences;
 use super::place::read_text;
+use super::placing::finish_after_kill;
 use super::{
     RunError, checksums, curve, journal, levels_table, looks, plane_file, research_object,
     stability,
@@ -130,8 +131,9 @@ impl Layout {
         self.entries.first().copied().unwrap_or_default()
     }
 
-    /// Whether a folder holds what an unfinished job has solved.
+    /// Whether a folder holds what an unfinished job has solved; files that a kill left half moved are moved first.
     pub(crate) fn has_part(&self, folder: &Path) -> bool {
+        finish_after_kill(folder);
         folder.join(self.part).is_file()
     }
 

@@ -81,6 +81,7 @@ mod map_shards;
 mod names;
 mod number;
 mod place;
+mod placing;
 mod plane_file;
 mod point_densities;
 mod points_table;
@@ -137,6 +138,7 @@ pub use manifest::PhaseSeconds;
 pub(crate) use map::map_files;
 pub(crate) use map_shards::{MapShards, map_shard_file};
 pub use names::check_names;
+pub(crate) use names::check_names_compared;
 pub(crate) use number::{format_number, format_with_error};
 
 pub use plane_file::{StoredPlane, StoredPlaneContent};

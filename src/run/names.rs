@@ -3,7 +3,8 @@
 
 use super::columns::Named;
 use super::{
-    arrays, checks, codimension, export, features_table, levels_table, map, points_table, spectra,
+    arrays, checks, codimension, compare, export, features_table, levels_table, map, points_table,
+    spectra,
 };
 use crate::continuation::curve::Plane;
 use crate::continuation::{MeasureColumn, asked_of};
@@ -20,10 +21,23 @@ type Together = (&'static str, Vec<Named>);
 /// # Errors
 /// A report with the place of every name that has to be another one.
 pub fn check_names(settings: &Settings) -> Result<(), Report> {
+    check(settings, together(settings))
+}
+
+/// The same of a file by which methods are compared.
+///
+/// # Errors
+/// As [`check_names`].
+pub(crate) fn check_names_compared(settings: &Settings) -> Result<(), Report> {
+    let tables = compare::column_names(&settings.family, &settings.observables);
+    check(settings, tables)
+}
+
+fn check(settings: &Settings, together: Vec<Together>) -> Result<(), Report> {
     let given = settings.given_names();
     let mut changed: Vec<&str> = Vec::new();
     let mut found = Vec::new();
-    for (kind, names) in together(settings) {
+    for (kind, names) in together {
         for (index, later) in names.iter().enumerate() {
             let mut earlier = names[..index].iter();
             let clash = earlier.find_map(|one| Some((one, one.shared(later)?)));

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::place::{FIGURES, folder_in, read_text};
+use super::placing::finish_after_kill;
 use super::{RunError, checksums};
 use crate::continuation::curve::{
     Curve, CurveEnd, CurveOrigin, CurvePoint, CurveTree, EndReason, LevelCurve, Plane,
@@ -190,6 +191,7 @@ impl StoredPlane {
     /// [`RunError::Read`], [`RunError::Plane`], [`RunError::Version`] where it is of another version, and
     /// [`RunError::Damaged`] by the checksums of the folder.
     pub fn open(folder: &Path) -> Result<Option<Self>, RunError> {
+        finish_after_kill(folder);
         let marks = ["map.json", "curve.json"].into_iter();
         let Some(mark) = marks.into_iter().find(|mark| folder.join(mark).is_file()) else {
             return Ok(None);

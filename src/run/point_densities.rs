@@ -7,9 +7,13 @@ use super::stored_fields::StoredFields;
 use super::{Journal, RunError};
 use crate::continuation::{Point, Subject};
 use crate::space::{Axis, CellSpace};
+use crate::sweep_file::{bytes_in_words, has_room};
 
 /// No density is as large: its square is still a number.
 const LARGEST: f64 = 1e150;
+
+/// Bytes that are tried for beside densities: heaps of threads, and what is read and drawn.
+const BESIDE: f64 = 1.5e8;
 
 /// The densities of a run, opened for the observables of a subject.
 pub(super) struct PointDensities<'a> {
@@ -61,6 +65,22 @@ impl<'a> PointDensities<'a> {
             fields,
             path,
         })
+    }
+
+    /// Refuses so many points of the run in a folder where the system would not give the memory for their densities.
+    ///
+    /// # Errors
+    /// [`RunError::Memory`].
+    pub(super) fn check_room(&self, run: &Path, points: usize) -> Result<(), RunError> {
+        let one = self.store.as_ref().map_or(0, StoredDensities::numbers);
+        let bytes = (points * one * size_of::<f64>()) as f64 + BESIDE;
+        match has_room(bytes) {
+            true => Ok(()),
+            false => Err(RunError::Memory {
+                path: run.to_owned(),
+                bytes: bytes_in_words(bytes),
+            }),
+        }
     }
 
     /// Gives a point its densities, and its fields of passages.

@@ -3,7 +3,7 @@
 use super::{RunError, StoredRun};
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource as _, Point};
-use crate::density::{EstimatedDensity, total_variation};
+use crate::density::{EstimatedDensity, half_difference};
 use crate::sweep_file::Sweep;
 
 /// What rounding and another order of sums may make of a density, as total variation.
@@ -71,7 +71,7 @@ impl StoredRun {
             let mut now = solution.densities.iter();
             let now = now.find(|one| one.observable == stored.observable);
             let now = now.ok_or_else(|| failed("a watched density is missing".to_owned()))?;
-            let apart = total_variation(&stored.density, &now.density);
+            let apart = half_difference(&stored.density, &now.density);
             found.apart = found
                 .apart
                 .max(apart.map_err(|error| failed(error.to_string()))?);

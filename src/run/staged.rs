@@ -11,14 +11,14 @@ use super::{
 };
 use crate::continuation::SweepResult;
 
-/// What a sweep solved for: it stays when the run is detected again.
+/// What a sweep solved for: a run that is detected again has it too.
 const SOLVED: [&str; 3] = ["densities.zarr", "checks.csv", looks::NAME];
 
 /// The new version in the making. Dropped before it is in place, it leaves everything as it was.
 #[derive(Debug)]
 pub(crate) struct StagedRun {
     staging: Staging,
-    /// Whether what was solved for is in place already.
+    /// Whether it replaces the run that was solved.
     same: bool,
     /// Whether the run has come to its end; the densities of another one stand in its journal.
     is_complete: bool,
@@ -32,7 +32,7 @@ impl StagedRun {
     pub(crate) fn new(home: &Path, solved: &StoredRun) -> Result<Self, RunError> {
         let staging = Staging::new(home, Layout::SWEEP.entries)?.with(Layout::SWEEP.about)?;
         let same = is_same(home, solved.path());
-        for entry in SOLVED.iter().filter(|_| !same) {
+        for entry in SOLVED {
             link_tree(&solved.path().join(entry), &staging.fresh().join(entry))?;
         }
         let is_complete = solved.ending() == Ending::Complete;
@@ -79,19 +79,17 @@ impl StagedRun {
     /// [`RunError::Read`] or [`RunError::Write`].
     pub(crate) fn take_place(self) -> Result<Vec<PathBuf>, RunError> {
         // A run that goes on needs its journal, which cannot be shared with another folder.
-        let home = self.staging.home().to_owned();
+        let (home, fresh) = (self.staging.home(), self.staging.fresh());
+        research_object::write(&fresh)?;
+        checksums::write(&fresh, Layout::SWEEP.entries)?;
         let mut staying = Vec::new();
         if self.same {
-            staying.extend(SOLVED);
             staying.push(Layout::SWEEP.part);
-            if has_the_rows_of(&self.staging.fresh(), &home) {
+            if has_the_rows_of(&fresh, home) {
                 staying.extend(Layout::SWEEP.about);
             }
         }
-        let placed = self.staging.take_place(&staying)?;
-        research_object::write(&home)?;
-        checksums::write(&home, Layout::SWEEP.entries)?;
-        Ok(placed.files)
+        Ok(self.staging.take_place(&staying, &[])?.files)
     }
 }
 

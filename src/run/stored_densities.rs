@@ -16,6 +16,9 @@ use crate::method::OneAxisFamily;
 use crate::space::{Axis, CellSpace};
 use crate::system::{Family, Symmetry, proved_symmetry, symmetry_over_a_period};
 
+/// Numbers that a density has of each of its axes, for each of their cells.
+const OF_AXES: usize = 6;
+
 /// The store of a run, opened for the observables that are wanted of it.
 pub(super) struct StoredDensities {
     path: PathBuf,
@@ -85,6 +88,11 @@ impl StoredDensities {
         })
     }
 
+    /// How many numbers the densities at a value have at most, with what is known of their axes.
+    pub(super) fn numbers(&self) -> usize {
+        self.observed.iter().map(Observed::numbers).sum()
+    }
+
     /// The densities at a parameter value; `None` if the store has none there.
     ///
     /// # Errors
@@ -141,6 +149,15 @@ impl StoredDensities {
 }
 
 impl Observed {
+    fn numbers(&self) -> usize {
+        let optional = [&self.second, &self.closed, &self.replicates];
+        let arrays = optional.into_iter().flatten();
+        let arrays = arrays.chain([&self.density, &self.error]);
+        let length = |array: &StoredArray| array.shape()[1..].iter().product::<u64>() as usize;
+        let along: usize = self.axes.iter().map(Axis::count).sum();
+        arrays.map(length).sum::<usize>() + OF_AXES * along
+    }
+
     fn estimate(
         &self,
         path: &Path,

@@ -8,6 +8,7 @@ use serde::Deserialize;
 use super::checks::read_checks;
 use super::manifest::{Typed, hash};
 use super::place::{FIGURES, folder_in, read};
+use super::placing::finish_after_kill;
 use super::point_densities::PointDensities;
 use super::points_table::read_points;
 use super::sealing::seal_after_kill;
@@ -63,6 +64,7 @@ impl StoredRun {
     /// [`RunError::NotARun`], [`RunError::Read`], [`RunError::Manifest`], [`RunError::Version`],
     /// [`RunError::Hash`]; [`RunError::Damaged`] by its checksums.
     pub fn open(path: &Path) -> Result<Self, RunError> {
+        finish_after_kill(path);
         let file = path.join("run.json");
         if !file.is_file() {
             return Err(RunError::NotARun {
@@ -222,7 +224,8 @@ impl StoredRun {
     ///
     /// # Errors
     /// [`RunError::Read`], [`RunError::Column`] and [`RunError::Row`] for the table; [`RunError::ReadStore`],
-    /// [`RunError::NotStored`], [`RunError::Cells`] and [`RunError::NoDensity`] for the densities.
+    /// [`RunError::NotStored`], [`RunError::Cells`], [`RunError::NoDensity`] and [`RunError::Memory`] for the
+    /// densities.
     pub fn points(
         &self,
         subject: &Subject,
@@ -252,6 +255,8 @@ impl StoredRun {
             return self.check_sums().map(|()| points);
         }
         let densities = PointDensities::open(&self.path, complete, subject, (space, bins))?;
+        let count = points.iter().filter(|point| has_density(point)).count();
+        densities.check_room(&self.path, count)?;
         let solved = points.par_iter_mut();
         let solved = solved.filter(|point| has_density(point));
         let results: Vec<Result<(), RunError>> =

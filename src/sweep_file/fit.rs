@@ -2,7 +2,7 @@
 //! takes long.
 
 use super::diagnostic::Diagnostic;
-use super::memory::{bytes_in_words, machine_memory};
+use super::memory::{bytes_in_words, has_room, machine_memory};
 use super::names::list;
 use super::report::Report;
 use super::settings::{AxisSettings, Modes, Settings};
@@ -51,16 +51,13 @@ impl Settings {
         .collect()
     }
 
-    /// Refuses what the system would not give: a limit of the process (`ulimit -v`) shows when memory is asked for, and
-    /// in the middle of a solve it ends the program.
+    /// Refuses what the system would not give.
     fn check_given(&self, at_work: f64, kept: f64) -> Result<(), Report> {
         // What is more than the machine has is told elsewhere, and may be a bound that is never reached.
         let most = machine_memory().map_or(SMALL_MACHINE, |memory| 0.5 * memory);
         let beside = BESIDE + A_THREAD * rayon::current_num_threads() as f64;
         let bytes = (at_work + kept + beside).min(most);
-        // Nothing is written to it: only room among the addresses is asked for.
-        let mut room = Vec::<u8>::new();
-        if room.try_reserve_exact(bytes as usize).is_ok() {
+        if has_room(bytes) {
             return Ok(());
         }
         let title = format!(

@@ -12,6 +12,14 @@ pub(crate) fn machine_memory() -> Option<f64> {
     (memory > 0).then_some(memory as f64)
 }
 
+/// Whether the system gives this process so many bytes beside what it has: a limit (`ulimit -v`) shows when memory is
+/// asked for, and in the middle of something it ends the program. Nothing is written to them: only room among the
+/// addresses is asked for.
+pub(crate) fn has_room(bytes: f64) -> bool {
+    let mut room = Vec::<u8>::new();
+    room.try_reserve_exact(bytes as usize).is_ok()
+}
+
 /// A number of bytes as people write it.
 pub(crate) fn bytes_in_words(bytes: f64) -> String {
     let units = ["kB", "MB", "GB", "TB", "PB"];

@@ -70,7 +70,7 @@ pub use draft::{MethodKind, MethodSettings};
 pub use file::SweepFile;
 pub use gallery::{StartingFile, starting_files};
 pub use keys::{Key, help, keys};
-pub(crate) use memory::{bytes_in_words, machine_memory};
+pub(crate) use memory::{bytes_in_words, has_room, machine_memory};
 pub(crate) use names::list;
 pub use report::Report;
 pub use settings::{

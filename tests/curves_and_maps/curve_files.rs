@@ -39,7 +39,8 @@ fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
         ("--second b --from 0 --to 2", "no parameter `b`"),
         ("--second h --from 0 --to 2", "the second parameter of the curve is the swept one"),
         ("--second a --from 1.2 --to 2", "the sweep holds `a` at 1, and the box of the curves goes from 1.2 to 2.0"),
-        ("--second a --from 0.2 --to 1e308", "from 0.2 to 1e308: so long a side leaves no digits"),
+        ("--second a --from 0.2 --to 1e308", "from 0.2 to 1e308: on so long a side that value is not told from others"),
+        ("--second a --from 0.2 --to 1e4", "a side of at most 1000.0"),
         ("--second a --from 1 --to 1", "the box of the curves goes from 1 to 1 along `a`"),
         ("--second a --from x --to 1", "allowed: a number"),
     ] {

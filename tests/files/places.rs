@@ -233,6 +233,33 @@ fn limits_of_a_process_are_told() {
 }
 
 #[test]
+fn a_run_with_more_densities_than_memory_is_refused_with_a_sentence() {
+    let room = Room::new();
+    let cells = "sweep.points=301 cells.x.count=2000 locate.effort=0 figures.formats=[]";
+    room.solved(&format!(
+        "sweep sweeps/bistable.toml {cells} --quiet --out run"
+    ));
+    let mut refused = 0;
+    for megabytes in [150, 200, 250, 300, 400, 1500] {
+        let limit = format!("-v {}", 1_000 * megabytes);
+        for line in [
+            "show run",
+            "list run",
+            "verify run",
+            "detect run --quiet figures.formats=[]",
+        ] {
+            let told = limited(&room, &limit, line);
+            assert!(matches!(told.code, Some(0 | 2)), "{megabytes} MB: {told:?}");
+            if told.code == Some(2) {
+                refused += 1;
+                assert_says(&told.err, &["of memory, and the system gives", "ulimit -v"]);
+            }
+        }
+    }
+    assert!((1..6).contains(&refused), "{refused}");
+}
+
+#[test]
 fn whatever_memory_a_process_is_given_it_ends_with_a_sentence() {
     let room = Room::new();
     let sweep =

@@ -135,6 +135,46 @@ fn a_second_parameter_is_not_called_as_a_column_of_its_tables_is() {
 }
 
 #[test]
+fn a_second_parameter_of_the_command_is_not_called_as_a_column_is() {
+    let room = Room::new();
+    let text = "system.equations = { x = \"a x - slope x^3\" }\nsystem.noise = { x = \"0.5\" }\n\
+                system.parameters = { slope = 1.0 }\n\
+                sweep = { parameter = \"a\", from = -0.5, to = 0.6, points = 5 }\n\
+                cells.x = { from = -2.5, to = 2.5, count = 60 }\nfigures = { formats = [] }\n";
+    room.write("mine.toml", text);
+    room.done("sweep mine.toml --quiet --out run");
+    let words = [
+        "columns of curves.csv would be called `slope`",
+        "give `slope` another name",
+    ];
+    room.refused("curve run --second slope --from 0.5 --to 2", &words);
+    assert!(!room.holds("run/curves"));
+}
+
+#[test]
+fn a_swept_parameter_of_a_comparison_is_not_called_as_a_column_of_its_tables_is() {
+    let room = Room::new();
+    for (name, file) in [
+        ("bytes", "compare.csv"),
+        ("tv_noise", "distances.csv"),
+        ("share", "agreement.csv"),
+        ("generator", "measures.csv"),
+        ("tv", "distances.csv"),
+        ("reference", "accuracy.csv"),
+    ] {
+        let text = two_axes(["x", "y"], name, "");
+        // A sweep has no such column.
+        let settings = SweepFile::parse("mine.toml", &text).validate().unwrap();
+        check_names(&settings).unwrap();
+        room.write("mine.toml", text);
+        let column = format!("columns of {file} would be called `{name}`");
+        let remedy = format!("give `{name}` another name");
+        room.refused("compare mine.toml", &[&column, &remedy, "mine.toml:10"]);
+    }
+    assert_eq!(room.names(), ["mine.toml"]);
+}
+
+#[test]
 fn every_name_that_is_alike_is_told_once() {
     let detect = "[detect]\nmarginals = [\"x\", \"xy = x + y\", \"x_error = 2 x\"]\njoint = [[\"x\", \"y\"]]";
     let said = refused(&two_axes(["x", "y"], "status", detect));

@@ -9,9 +9,13 @@ use super::view;
 pub(crate) fn table(columns: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let mut text = columns.join(",") + "\n";
     for row in rows {
-        text += &(row.join(",") + "\n");
+        text += &line(&row);
     }
     text
+}
+
+fn line(row: &[String]) -> String {
+    row.join(",") + "\n"
 }
 
 /// The shortest text that reads back as the same number; empty for values that are none.
@@ -48,7 +52,10 @@ pub(crate) fn of_marginals(
     rows: impl Fn(&EstimatedDensity, usize) -> Vec<(f64, f64, String)>,
 ) -> String {
     let family = &result.subject.family;
-    let mut lines = Vec::new();
+    let parameter = family.parameter();
+    let columns = [parameter, "axis", "coordinate", "density", "standard_error"];
+    // Line by line: together their fields would take ten times as much as the text.
+    let mut text = table(&columns, None);
     for point in points {
         for &observable in observables {
             let (Some(estimated), Observable::Marginal(axis)) = (
@@ -58,17 +65,13 @@ pub(crate) fn of_marginals(
                 continue;
             };
             let (at, axis) = (number(point.value), family.axis(axis).to_owned());
-            let rows = rows(estimated, observable).into_iter();
-            lines.extend(rows.map(|(place, value, error)| {
-                let numbers = [number(place), number(value)];
-                let [place, value] = numbers;
-                vec![at.clone(), axis.clone(), place, value, error]
-            }));
+            for (place, value, error) in rows(estimated, observable) {
+                let [place, value] = [place, value].map(number);
+                text += &line(&[at.clone(), axis.clone(), place, value, error]);
+            }
         }
     }
-    let parameter = family.parameter();
-    let columns = [parameter, "axis", "coordinate", "density", "standard_error"];
-    table(&columns, lines)
+    text
 }
 
 /// The cells of a joint density at some points.
@@ -77,7 +80,15 @@ pub(crate) fn of_joint(result: &SweepResult, observable: usize, points: &[&Point
     let Observable::Joint(first, second) = result.subject.observables[observable] else {
         return String::new();
     };
-    let mut lines = Vec::new();
+    let axes = (family.axis(first), family.axis(second));
+    let columns = [
+        family.parameter(),
+        axes.0,
+        axes.1,
+        "density",
+        "standard_error",
+    ];
+    let mut text = table(&columns, None);
     for point in points {
         let Some(estimated) = view::density(point, observable) else {
             continue;
@@ -89,16 +100,8 @@ pub(crate) fn of_joint(result: &SweepResult, observable: usize, points: &[&Point
         for (cell, &value) in estimated.density.values.iter().enumerate() {
             let (i, j) = (cell / along.len(), cell % along.len());
             let numbers = [point.value, across[i], along[j], value].map(number);
-            lines.push([&numbers[..], &[error(estimated, cell)]].concat());
+            text += &line(&[&numbers[..], &[error(estimated, cell)]].concat());
         }
     }
-    let axes = (family.axis(first), family.axis(second));
-    let columns = [
-        family.parameter(),
-        axes.0,
-        axes.1,
-        "density",
-        "standard_error",
-    ];
-    table(&columns, lines)
+    text
 }

@@ -77,8 +77,8 @@ fn the_curves_of_a_run_go_with_it_and_what_stands_beside_them_stays() {
     };
     put("run.json");
     for name in ["PB1-a", "PB1-a/previous/1", "PB2-a"] {
-        put(&format!("curves/{name}/curve.json"));
         put(&format!("curves/{name}/curves.csv"));
+        put(&format!("curves/{name}/curve.json"));
     }
     put("curves/PB3-a/curve.part.bin");
     let mine = ["curves/PB2-a/notes.txt", "curves/mine/curves.csv"];
@@ -99,4 +99,25 @@ fn a_run_that_is_written_is_not_removed() {
     let error = remove_run(home.path()).unwrap_err();
     assert!(matches!(error, RunError::InUse { .. }));
     assert!(home.path().join("run.json").exists());
+}
+
+#[test]
+fn a_table_without_a_checksum_stays_where_it_is_later_than_the_run() {
+    let home = tempfile::tempdir().unwrap();
+    let run = home.path().join("run");
+    std::fs::create_dir_all(&run).unwrap();
+    let table = run.join("points.csv");
+    for name in ["points.csv", "features.csv", "journal.bin", "run.json"] {
+        std::fs::write(run.join(name), name).unwrap();
+    }
+    let ended = written(&run.join("run.json")).unwrap();
+    std::fs::write(&table, "by hand").unwrap();
+    let file = std::fs::File::options().write(true).open(&table).unwrap();
+    file.set_modified(ended + std::time::Duration::from_secs(60))
+        .unwrap();
+    let removal = remove_run(&run).unwrap();
+    let later = |one: &&(PathBuf, Stays)| one.0 == table && matches!(one.1, Stays::Later);
+    assert!(removal.stays.iter().any(|one| later(&one)));
+    assert_eq!(std::fs::read_to_string(&table).unwrap(), "by hand");
+    assert!(!run.join("features.csv").exists() && !run.join("run.json").exists());
 }

@@ -6,12 +6,13 @@ use super::ComparedRun;
 use crate::compare::{ComparedValue, MeasurePair};
 use crate::run::RunError;
 use crate::run::columns::{Columns, number, word};
+use crate::system::Family;
 
 /// Numbers by generator and Monte Carlo, a row a value and measure.
-fn measures<'a>(run: &ComparedRun<'a>) -> Columns<'a, (f64, MeasurePair)> {
+pub(super) fn measures<'a>(family: &Family) -> Columns<'a, (f64, MeasurePair)> {
     type Row = (f64, MeasurePair);
     Columns(vec![
-        number(run.family().parameter(), |(value, _): &Row| *value),
+        number(family.parameter(), |(value, _): &Row| *value),
         word("measure", |(_, one): &Row| one.name.clone()),
         number("generator", |(_, one): &Row| one.generator.0),
         number("generator_error", |(_, one): &Row| one.generator.1),
@@ -36,10 +37,10 @@ fn records(run: &ComparedRun<'_>) -> Vec<(f64, MeasurePair)> {
 /// # Errors
 /// [`RunError::Table`].
 pub(super) fn measures_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
-    measures(run).csv(&records(run))
+    measures(run.family()).csv(&records(run))
 }
 
 /// The same as JSON.
 pub(super) fn measures_json(run: &ComparedRun<'_>) -> Value {
-    measures(run).json(&records(run))
+    measures(run.family()).json(&records(run))
 }

@@ -5,6 +5,7 @@ mod people;
 mod rows;
 
 pub(crate) use people::compare_tables;
+pub(super) use rows::column_names;
 
 use measures::measures_csv;
 use people::{compare_markdown, compare_tex};

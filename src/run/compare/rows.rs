@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::measures::measures_json;
+use super::measures::{measures, measures_json};
 use super::{ComparedRun, partner};
 use crate::compare::{
     Accuracy, AccuracyPoint, Agreement, ComparedValue, Distance, Distances, Method, Pair,
@@ -12,17 +12,18 @@ use crate::continuation::MeasureKind;
 use crate::continuation::measure::{
     ESCAPE_RATE, FACTORISATIONS, MAP_STEP, NUMERICAL_DIFFUSION, TIME_STEP_BIAS,
 };
-use crate::density::EstimatedDensity;
-use crate::run::columns::{Column, Columns, count, digits, flag, number, optional, word};
+use crate::density::{EstimatedDensity, Observable};
+use crate::run::columns::{Column, Columns, Named, count, digits, flag, number, optional, word};
 use crate::run::sentences::sentences;
 use crate::run::{RunError, format_number, manifest::hash};
+use crate::system::Family;
 
 /// A record that belongs to a parameter value.
 type At<'r, T> = (&'r ComparedValue, &'r T);
 
 /// The column of the parameter's values.
-fn parameter<'a, T>(run: &ComparedRun<'a>) -> Column<'a, At<'a, T>> {
-    number(run.family().parameter(), |(at, _): &At<'a, T>| at.value)
+fn parameter<'a, T>(family: &Family) -> Column<'a, At<'a, T>> {
+    number(family.parameter(), |(at, _): &At<'a, T>| at.value)
 }
 
 /// The records that a list of each value holds.
@@ -106,11 +107,10 @@ fn costs<'a>() -> Vec<Column<'a, At<'a, Solved>>> {
 }
 
 /// A row a value and method.
-fn methods<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Solved>> {
+fn methods<'a>(family: &'a Family, observables: &[Observable]) -> Columns<'a, At<'a, Solved>> {
     type Row<'a> = At<'a, Solved>;
-    let family = run.family();
     let mut columns = vec![
-        parameter(run),
+        parameter(family),
         word("method", |(_, one): &Row<'a>| one.method.name()),
         word("status", |(_, one): &Row<'a>| one.status.word()),
     ];
@@ -124,12 +124,12 @@ fn methods<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Solved>> {
         }),
         optional("share_outside", |(_, one): &Row<'a>| one.share_outside),
     ]);
-    for axis in 0..run.comparison.common.dimension() {
-        columns.push(of_measure(&NUMERICAL_DIFFUSION, run.family().axis(axis)));
+    for axis in 0..family.model().axes.len() {
+        columns.push(of_measure(&NUMERICAL_DIFFUSION, family.axis(axis)));
     }
-    for &observable in &run.comparison.subject.observables {
+    for &observable in observables {
         let exact = move |(at, one): &Row<'a>| at.pair(one.method, None, observable).copied();
-        let name = observable.name(run.family());
+        let name = observable.name(family);
         columns.push(optional(format!("tv_exact_{name}"), move |row| {
             exact(row).map(|found| found.total_variation.value)
         }));
@@ -143,12 +143,15 @@ fn methods<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Solved>> {
     Columns(columns)
 }
 
+fn methods_of<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Solved>> {
+    methods(run.family(), &run.comparison.subject.observables)
+}
+
 /// A row a value, pair (two methods, or a method and the exact density) and observable.
-fn distances<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Pair>> {
+fn distances<'a>(family: &'a Family) -> Columns<'a, At<'a, Pair>> {
     type Row<'a> = At<'a, Pair>;
-    let family = run.family();
     let mut columns = vec![
-        parameter(run),
+        parameter(family),
         word("first", |(_, one): &Row<'a>| one.first.name()),
         word("second", |(_, one): &Row<'a>| partner(one.second)),
         word("observable", move |(_, one): &Row<'a>| {
@@ -176,11 +179,10 @@ fn distances<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Pair>> {
 }
 
 /// Generator and Monte Carlo bin by bin, a row a value and marginal.
-fn agreement<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Agreement>> {
+fn agreement<'a>(family: &'a Family) -> Columns<'a, At<'a, Agreement>> {
     type Row<'a> = At<'a, Agreement>;
-    let family = run.family();
     Columns(vec![
-        parameter(run),
+        parameter(family),
         word("observable", move |(_, one): &Row<'a>| {
             one.observable.name(family)
         }),
@@ -193,9 +195,8 @@ fn agreement<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Agreement>> {
 }
 
 /// Error against time, a row a method and grid or number of samples.
-fn accuracy<'a>(run: &ComparedRun<'a>) -> Columns<'a, (&'a Accuracy, &'a AccuracyPoint)> {
+fn accuracy<'a>(family: &'a Family) -> Columns<'a, (&'a Accuracy, &'a AccuracyPoint)> {
     type Row<'a> = (&'a Accuracy, &'a AccuracyPoint);
-    let family = run.family();
     Columns(vec![
         number(family.parameter(), |(all, _): &Row<'a>| all.value),
         word("observable", move |(all, _): &Row<'a>| {
@@ -240,9 +241,8 @@ impl AtCell<'_> {
 }
 
 /// The densities on the common cells.
-fn densities<'a>(run: &ComparedRun<'a>) -> Columns<'a, AtCell<'a>> {
+fn densities<'a>(family: &'a Family) -> Columns<'a, AtCell<'a>> {
     type Row<'a> = AtCell<'a>;
-    let family = run.family();
     Columns(vec![
         number(family.parameter(), |row: &Row<'a>| row.solved.0.value),
         word("method", |row: &Row<'a>| row.solved.1.method.name()),
@@ -260,12 +260,30 @@ fn densities<'a>(run: &ComparedRun<'a>) -> Columns<'a, AtCell<'a>> {
     ])
 }
 
+/// The names of the columns of each table.
+pub(in crate::run) fn column_names(
+    family: &Family,
+    observables: &[Observable],
+) -> Vec<(&'static str, Vec<Named>)> {
+    vec![
+        (
+            "columns of compare.csv",
+            methods(family, observables).names(),
+        ),
+        ("columns of distances.csv", distances(family).names()),
+        ("columns of agreement.csv", agreement(family).names()),
+        ("columns of measures.csv", measures(family).names()),
+        ("columns of accuracy.csv", accuracy(family).names()),
+        ("columns of densities.csv", densities(family).names()),
+    ]
+}
+
 /// `compare.csv`: a row a value and method.
 ///
 /// # Errors
 /// [`RunError::Table`].
 pub(super) fn compare_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
-    methods(run).csv(&records(run, |value| &value.solved))
+    methods_of(run).csv(&records(run, |value| &value.solved))
 }
 
 /// `distances.csv`: a row a value, pair (two methods, or a method and the exact density) and observable.
@@ -273,7 +291,7 @@ pub(super) fn compare_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
 /// # Errors
 /// [`RunError::Table`].
 pub(super) fn distances_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
-    distances(run).csv(&records(run, |value| &value.pairs))
+    distances(run.family()).csv(&records(run, |value| &value.pairs))
 }
 
 /// `agreement.csv`: generator and Monte Carlo bin by bin, a row a value and marginal.
@@ -281,7 +299,7 @@ pub(super) fn distances_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
 /// # Errors
 /// [`RunError::Table`].
 pub(super) fn agreement_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
-    agreement(run).csv(&records(run, |value| &value.agreement))
+    agreement(run.family()).csv(&records(run, |value| &value.agreement))
 }
 
 /// `accuracy.csv`: error against time, a row a method and grid or number of samples.
@@ -289,7 +307,7 @@ pub(super) fn agreement_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
 /// # Errors
 /// [`RunError::Table`].
 pub(super) fn accuracy_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
-    accuracy(run).csv(&accuracy_points(run))
+    accuracy(run.family()).csv(&accuracy_points(run))
 }
 
 /// `densities.csv`: the densities on the common cells.
@@ -308,7 +326,7 @@ pub(super) fn densities_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
             }));
         }
     }
-    densities(run).csv(&rows)
+    densities(run.family()).csv(&rows)
 }
 
 /// `compare.json`: program, sweep, and all tables but the densities.
@@ -326,11 +344,11 @@ pub(super) fn compare_json(run: &ComparedRun<'_>) -> Result<String, RunError> {
         "ending": if run.comparison.interrupted { "interrupted" } else { "complete" },
         "common_cells": run.comparison.common.shape(),
         "agrees": run.comparison.agrees(),
-        "methods": methods(run).json(&records(run, |value| &value.solved)),
-        "distances": distances(run).json(&records(run, |value| &value.pairs)),
-        "agreement": agreement(run).json(&records(run, |value| &value.agreement)),
+        "methods": methods_of(run).json(&records(run, |value| &value.solved)),
+        "distances": distances(run.family()).json(&records(run, |value| &value.pairs)),
+        "agreement": agreement(run.family()).json(&records(run, |value| &value.agreement)),
         "measures": measures_json(run),
-        "accuracy": accuracy(run).json(&accuracy_points(run)),
+        "accuracy": accuracy(run.family()).json(&accuracy_points(run)),
     });
     Ok(serde_json::to_string_pretty(&object)? + "\n")
 }

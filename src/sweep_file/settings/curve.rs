@@ -93,8 +93,9 @@ pub(super) fn read(
     })
 }
 
-/// Longest side of the box, in units of the value that the sweep holds: nine digits of that are then left.
-const LONGEST: f64 = 1e7;
+/// Longest side of the box, in units of the value that the sweep holds. What is nearer to a curve than 1e-4 of the
+/// sides is on it, and what is so near to an end of the box is at that end: that is a tenth of the value then.
+const LONGEST: f64 = 1e3;
 
 /// Refuses a side of the box without length; the key is that of its upper end.
 fn check_side(
@@ -115,7 +116,7 @@ fn check_side(
     None
 }
 
-/// Refuses a box that the sweep does not run through.
+/// Refuses a box that the sweep does not run through, or in which the value that it holds is lost.
 fn check_held(
     reader: &mut Reader<'_>,
     (draft, family): (&Draft, &Family),
@@ -132,13 +133,19 @@ fn check_held(
         "the sweep holds `{name}` at {held}, and the box of the curves goes from {from:?} to {to:?}"
     );
     if is_lost {
-        title += ": so long a side leaves no digits of that value";
+        title += ": on so long a side that value is not told from others";
     }
-    let diagnostic = Diagnostic::new(title)
-        .allowed(format!("ends on either side of {held}"))
-        .remedy(
+    let (allowed, remedy) = match is_lost {
+        true => (
+            format!("a side of at most {:?}", LONGEST * held.abs()),
+            "follow the curve in steps: in a shorter box first, from a sweep at a value near its end then",
+        ),
+        false => (
+            format!("ends on either side of {held}"),
             "the curves start from the rows of the sweep: widen the box, or sweep at a value in it",
-        );
+        ),
+    };
+    let diagnostic = Diagnostic::new(title).allowed(allowed).remedy(remedy);
     // Of both ends the one that would have to be moved.
     let ends = [("from", draft.curve.from), ("to", draft.curve.to)];
     let is_first = held < from || is_lost && from.abs() > to.abs();
