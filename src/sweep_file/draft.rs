@@ -210,6 +210,14 @@ pub(super) struct SpectrumDraft {
     pub(super) lag: Option<f64>,
 }
 
+/// What the file says of the times at which the curve of a passage is wanted.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct SurvivalDraft {
+    pub(super) from: Option<f64>,
+    pub(super) to: Option<f64>,
+    pub(super) count: Option<usize>,
+}
+
 /// What the file says of a passage.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct PassageDraft {
@@ -225,6 +233,7 @@ pub(super) struct PassageDraft {
     /// Axes and coordinates.
     pub(super) start: Vec<(String, f64)>,
     pub(super) times: Option<Vec<f64>>,
+    pub(super) survival: SurvivalDraft,
     pub(super) quantiles: Option<Vec<f64>>,
 }
 

@@ -340,6 +340,56 @@ to = 3.0
 }
 
 #[test]
+fn a_passage_with_a_curve_has_a_figure_of_its_survival() {
+    let text = "\
+[system]
+equations = { x = '-x' }
+noise = { x = 'sqrt(2 D)' }
+[sweep]
+parameter = 'D'
+from = 0.2
+to = 0.4
+points = 3
+[cells]
+x = { from = -2, to = 2, count = 60 }
+[passage]
+out = { start = { x = 0 }, until = 'abs(x) > 1.5', survival = { from = 0.1, to = 10, count = 5 }, times = [1] }
+";
+    let (_, result) = crate::common::sweeps::swept(text, "");
+    let figures = Figures::of_sweep(&result, "", &[0.2, 0.4]);
+    let figure = figures.draw("survival_out").unwrap().remove(0);
+    let mut rows = figure.data.lines();
+    assert_eq!(rows.next(), Some("D,time,survival,error"));
+    let rows: Vec<Vec<f64>> = rows
+        .map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    // Even in logarithms, of three digits, and the one that is listed once.
+    let times: Vec<f64> = rows.iter().map(|row| row[1]).collect();
+    for (time, wanted) in times
+        .iter()
+        .zip([0.1, 0.316, 1.0, 3.16, 10.0].iter().cycle())
+    {
+        assert!((time / wanted - 1.0).abs() < 1e-12, "{times:?}");
+    }
+    assert_eq!(rows.len(), 10);
+    for pair in rows.windows(2).filter(|pair| pair[0][0] == pair[1][0]) {
+        assert!(pair[1][2] < pair[0][2] && pair[1][3] < 1e-3, "{pair:?}");
+    }
+    // What is drawn is what the table of points has.
+    let measures = &result.points[0].report.measures;
+    let listed = measures
+        .iter()
+        .find(|one| one.name == "out_1_survival")
+        .unwrap();
+    assert!((rows[2][2] / listed.value - 1.0).abs() < 1e-9);
+    assert!(
+        figure.caption.contains("the passage out lasts longer"),
+        "{}",
+        figure.caption
+    );
+}
+
+#[test]
 fn measures_are_told_in_words_and_those_of_solvers_are_not_among_them() {
     let mut result = bistable();
     let measure = |name: &str, unit: &str, value: f64| Measure {

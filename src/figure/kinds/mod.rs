@@ -22,6 +22,7 @@ mod section;
 mod spectrogram;
 mod spectrum;
 mod surface;
+mod survival;
 mod time_to_accuracy;
 
 use super::parts::{names, pages, view};
@@ -32,7 +33,7 @@ use crate::density::Observable;
 use crate::system::Family;
 
 /// The kinds of figures of a sweep, in the order in which they are drawn: a new kind is one line here.
-pub(super) const OF_SWEEPS: [Kind; 16] = [
+pub(super) const OF_SWEEPS: [Kind; 17] = [
     diagram::KIND,
     marginals::KIND,
     joint::KIND,
@@ -47,6 +48,7 @@ pub(super) const OF_SWEEPS: [Kind; 16] = [
     phases::KIND,
     period::KIND,
     field::KIND,
+    survival::KIND,
     spectrum::KIND,
     spectrogram::KIND,
 ];

@@ -163,10 +163,10 @@ pub(super) const UNTIL: Field = Field {
 
 /// A field of a passage.
 macro_rules! of_passage {
-    ($field:ident) => {
+    ($($field:ident).+) => {
         Field {
-            get: |draft, name| draft.passage(name)?.$field.as_ref().map(InFile::to_plain),
-            set: |draft, name, plain| draft.passage_mut(name).$field = InFile::from_plain(plain),
+            get: |draft, name| draft.passage(name)?.$($field).+.as_ref().map(InFile::to_plain),
+            set: |draft, name, plain| draft.passage_mut(name).$($field).+ = InFile::from_plain(plain),
         }
     };
 }

@@ -5,7 +5,7 @@ use super::{AxisSettings, Grade, Settings};
 use crate::density::Observable;
 use crate::sweep_file::draft::{
     Auto, AxisDraft, BinsDraft, CurveDraft, Draft, EndKind, EquationsDraft, ExponentKind, MapDraft,
-    PassageDraft,
+    PassageDraft, SurvivalDraft,
 };
 use crate::system::{FieldKind, Model, NoiseKind, PassageStart, Region};
 
@@ -195,6 +195,7 @@ impl Settings {
                 (!asked.is_empty()).then_some(asked)
             },
             times: (!one.times.is_empty()).then(|| one.times.clone()),
+            survival: SurvivalDraft::default(),
             quantiles: (!one.quantiles.is_empty()).then(|| one.quantiles.clone()),
         });
         draft.collect()

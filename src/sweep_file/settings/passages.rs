@@ -89,7 +89,7 @@ pub(super) fn read(
             },
             switching: passage.switching == Some(true),
             transitions: transitions.map(|either| read[either].clone()),
-            times: ascending(passage.times.as_ref()),
+            times: times(reader, passage),
             quantiles: ascending(passage.quantiles.as_ref()),
         },
     );
@@ -148,6 +148,37 @@ fn check_basins(
 }
 
 /// Numbers in their order, each once.
+/// Times of a passage: those that are listed, and those of its curve.
+fn times(reader: &mut Reader<'_>, passage: &PassageDraft) -> Vec<f64> {
+    let mut all = passage.times.clone().unwrap_or_default();
+    let asked = &passage.survival;
+    match (asked.from, asked.to) {
+        (Some(from), Some(to)) if from < to => {
+            let last = asked.count.unwrap_or(TIMES_OF_A_CURVE) - 1;
+            let step = (to / from).ln() / last as f64;
+            all.extend(
+                (0..=last).map(|number| in_three_digits(from * (step * number as f64).exp())),
+            );
+        }
+        (None, None) if asked.count.is_none() => {}
+        _ => {
+            let title = format!("the curve of passage `{}` has no times", passage.name);
+            let remedy =
+                "give the first and a later last one, as in `survival = { from = 1, to = 1000 }`";
+            refuse(reader, &passage.name, title, remedy);
+        }
+    }
+    ascending(Some(&all))
+}
+
+/// Times of a curve where their number is not given.
+const TIMES_OF_A_CURVE: usize = 36;
+
+/// A positive number with three digits: columns are called after it.
+fn in_three_digits(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
+}
+
 fn ascending(given: Option<&Vec<f64>>) -> Vec<f64> {
     let mut all = given.cloned().unwrap_or_default();
     all.sort_by(f64::total_cmp);
