@@ -139,10 +139,18 @@ impl Inward {
                 growth,
             };
             if rate * face - 0.5 * rate * width >= FROM_END {
-                break;
+                return Tail { outer, beyond };
             }
         }
-        Tail { outer, beyond }
+        // Nearer to the end the fall tells about how much is beyond, and not how it goes on.
+        let mass = beyond.mass;
+        Tail {
+            outer,
+            beyond: Beyond {
+                mass,
+                ..Beyond::default()
+            },
+        }
     }
 }
 
@@ -289,6 +297,15 @@ mod tests {
         assert_eq!(tail(&[(0.0, 1.0), (0.1, 1.0)]), 0.0);
         assert_eq!(tail(&[(-0.1, 1.0), (0.1, 1.0)]), 0.0);
         assert_eq!(tail(&[(0.1, 1.0), (-0.1, 1.0)]), 0.1);
+    }
+
+    #[test]
+    fn a_fall_that_ends_near_the_end_is_no_power_law() {
+        // It falls by 1.3 in the outermost cell alone, two and a half cells from the mean.
+        let cells = [0.05, 0.1, 0.1, 0.1, 0.1].map(|mass| (mass, 1.0));
+        let end = Inward::new(cells.to_vec()).tail().beyond;
+        assert!(end.mass > 0.0 && end.heavy().is_none(), "{end:?}");
+        assert_eq!(end.stretch(2), 1.0);
     }
 
     #[test]

@@ -79,6 +79,30 @@ impl Settings {
         }
     }
 
+    /// The same before ranges are looked for, where the noise has no value beyond, as a root of what is negative there
+    /// has none: trajectories could not start there.
+    pub(super) fn end_where_noise_has_no_value(
+        &mut self,
+        kept: &[usize],
+        corners: &[Arc<dyn System>],
+    ) {
+        let axes = self.axes.iter();
+        let mut ranges: Vec<(f64, f64)> = axes.map(|axis| pilot_box(axis.ends)).collect();
+        let upper: Vec<f64> = ranges.iter().map(|range| range.1).collect();
+        let has_none = |&axis: &usize| {
+            let noises = corners.iter().flat_map(|system| system.noises_on(axis));
+            noises
+                .into_iter()
+                .any(|noise| !noise.at(0.0, &upper).is_finite())
+        };
+        let ended: Vec<usize> = kept.iter().copied().filter(has_none).collect();
+        self.end_where_noise_dies(&ended, corners, &mut ranges);
+        for axis in ended {
+            let end = ranges[axis].1;
+            self.axes[axis].ends[1] = Some(end).filter(|end| *end < upper[axis]);
+        }
+    }
+
     /// Ends ranges from zero on at the first value above it that no path crosses upward anywhere along the sweep, and
     /// says so: beyond it nothing comes to from below, as beyond a share of one.
     pub(super) fn end_where_noise_dies(
@@ -120,9 +144,9 @@ impl Settings {
     }
 }
 
-/// The first value inside the range of an axis at which the amplitude of its noise changes its sign, with the other
-/// axes in the middle of theirs; of one noise that is the same function of the axis but for a factor, it is the same
-/// for all systems.
+/// The first value inside the range of an axis at which the amplitude of its noise changes its sign, or from which on
+/// it has no value, with the other axes in the middle of theirs; of one noise that is the same function of the axis but
+/// for a factor, it is the same for all systems.
 fn first_zero_of_noise(
     systems: &[Arc<dyn System>],
     axis: usize,
@@ -140,7 +164,9 @@ fn first_zero_of_noise(
     };
     let (from, to) = ranges[axis];
     let at = |part: usize| from + (to - from) * part as f64 / LOOKS as f64;
-    let part = (1..LOOKS).find(|&part| amplitude(at(part)) * amplitude(at(part + 1)) <= 0.0)?;
+    let keeps_sign = |here: f64, next: f64| here * next > 0.0;
+    let part =
+        (1..LOOKS).find(|&part| !keeps_sign(amplitude(at(part)), amplitude(at(part + 1))))?;
     let (mut low, mut high) = (at(part), at(part + 1));
     let sign = amplitude(low).signum();
     for _ in 0..HALVINGS {
@@ -150,7 +176,7 @@ fn first_zero_of_noise(
             false => high = middle,
         }
     }
-    (amplitude(high) == 0.0).then_some(high)
+    [high, low].into_iter().find(|&end| amplitude(end) == 0.0)
 }
 
 /// Those of some axes that stay positive in all the systems while all of them do, on these ranges of the others.

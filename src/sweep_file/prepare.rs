@@ -134,6 +134,7 @@ impl Settings {
         let system = |values| self.family.framed(model.system(&values));
         let ends: Vec<Arc<dyn System>> = corners.map(system).collect();
         let mut kept = self.keep_to_one_side(&ends);
+        self.end_where_noise_has_no_value(&kept, &ends);
         let mut ranges = self.find_ranges(&ends, cancellation)?;
         while self.reopen(&mut kept, &ends, &ranges) {
             ranges = self.find_ranges(&ends, cancellation)?;

@@ -1,4 +1,5 @@
-//! Ends at which noise dies, on more than one axis: populations that cannot be negative, whose marginals are known.
+//! Ends at which noise dies: populations that cannot be negative on more than one axis, whose marginals are known, and
+//! square-root noises, which have no value beyond.
 
 use pbif::cancellation::Cancellation;
 use pbif::continuation::{
@@ -211,5 +212,40 @@ kind = "largest"
             "{s}: {value} ± {error:e}, exact {exact}"
         );
         assert!(error < 0.15 * exact.abs(), "{s}: {error:e}");
+    }
+}
+
+#[test]
+fn square_root_noises_need_neither_ends_nor_cells() {
+    // Cox, Ingersoll and Ross' process in Stratonovich's reading has the drift 1 - x + s²/4 in Itô's, which has a value
+    // at 0 though the derivative of the amplitude has none: p ~ x^(2/s² - 1/2). Jacobi's: p ~ x^(0.6/s - 1) and
+    // (1 - x)^(1.4/s - 1). A peak reaches an end, or is born there, where the power is zero: at values of the sweep.
+    let sweep = |drift: &str, noise: &str, interpretation: &str, to: f64| {
+        let text = format!(
+            "[system.equations]\nx = \"{drift}\"\n[system.noise]\nx = \"{noise}\"\n\
+             interpretation = \"{interpretation}\"\n\
+             [sweep]\nparameter = \"s\"\nfrom = 0.2\nto = {to}\npoints = 15\n"
+        );
+        swept(&text, "").1
+    };
+    let cases = [
+        (sweep("1 - x", "s sqrt(x)", "stratonovich", 3.0), vec![2.0]),
+        (
+            sweep("0.3 - x", "sqrt(s x (1 - x))", "ito", 3.0),
+            vec![0.6, 1.4],
+        ),
+    ];
+    for (result, exact) in cases {
+        let found = rows(&result, "x");
+        assert_eq!(found.len(), exact.len());
+        for (row, exact) in found.iter().zip(exact) {
+            assert_eq!(row.status(), BifurcationStatus::Located);
+            assert!(
+                (row.value - exact).abs() < row.error,
+                "{} ± {}",
+                row.value,
+                row.error
+            );
+        }
     }
 }

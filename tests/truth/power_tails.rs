@@ -13,8 +13,8 @@ fn growing(beside: &str) -> String {
         _ => (
             "y = \"-y + x\"",
             "y = \"0.5\"",
-            "[cells]\nx = { from = -6, to = 6, count = 100, grade = 0.2 }\n\
-             y = { from = -6, to = 6, count = 60, grade = 0.3 }",
+            "[cells]\nx = { from = -6, to = 6, count = 100, grade = \"auto\" }\n\
+             y = { from = -6, to = 6, count = 60, grade = \"auto\" }",
         ),
     };
     format!(

@@ -45,16 +45,16 @@ impl Scale {
             return;
         }
         self.write_labels_left(page, rect);
-        let title = Lettering {
-            upward: true,
-            ..lettering(self.title(), HPos::Center)
-        };
         let middle = rect.top + 0.5 * rect.height;
-        // Centring across the direction is done in the rotated frame, so the point is the middle of the line.
-        page.text(
-            (rect.left - self.label_width() - GAP - 0.6 * TEXT, middle),
-            title,
-        );
+        let first = rect.left - self.label_width() - GAP - 0.6 * TEXT - self.second_line();
+        for (number, line) in self.upward().iter().enumerate() {
+            let title = Lettering {
+                upward: true,
+                ..lettering(line, HPos::Center)
+            };
+            // Centring across the direction is done in the rotated frame, so the point is the middle of the line.
+            page.text((first + number as f64 * self.second_line(), middle), title);
+        }
     }
 
     /// Draws ticks and labels left of a rectangle, and no title.

@@ -18,8 +18,13 @@ pub(crate) struct Scale {
     pub(crate) range: (f64, f64),
     pub(super) ticks: Ticks,
     title: String,
+    /// The title beside a vertical axis: two lines where one is longer than the axis.
+    upward: Vec<String>,
     widest: f64,
 }
+
+/// A title beside an axis may be so much longer.
+const OVER: f64 = 16.0;
 
 impl Scale {
     /// Lays out a horizontal axis: as many labels as stand apart.
@@ -83,18 +88,39 @@ impl Scale {
         let most = |apart: f64| ((length / (apart * TICK_TEXT)) as usize).clamp(2, 7);
         let scale = Self::with(look, range, most(2.6), title);
         if scale.ticks.major.len() >= FEW {
-            return scale;
+            return scale.folded(look, length);
         }
         // Three labels stand on anything longer than three lines.
         let least = if length >= 3.2 * TICK_TEXT { 3 } else { 2 };
-        Self::with(look, range, most(1.6).max(least), title)
+        Self::with(look, range, most(1.6).max(least), title).folded(look, length)
+    }
+
+    /// The same with the title beside it in two lines, where one is longer than the axis.
+    fn folded(mut self, look: &Look, length: f64) -> Self {
+        let wide = |text: &str| letters::text_width(look, text, TEXT, false);
+        if wide(&self.title) > length + OVER {
+            let is_between =
+                |at: &usize| self.title[..*at].matches(['$', '{', '}']).count() % 2 == 0;
+            let spaces = self
+                .title
+                .match_indices(' ')
+                .map(|(at, _)| at)
+                .filter(is_between);
+            let lines = spaces.map(|at| [&self.title[..at], &self.title[at + 1..]]);
+            let longer = |lines: &[&str; 2]| wide(lines[0]).max(wide(lines[1]));
+            let best = lines.min_by(|a, b| longer(a).total_cmp(&longer(b)));
+            if let Some(best) = best {
+                self.upward = best.map(str::to_owned).to_vec();
+            }
+        }
+        self
     }
 
     /// Lays out an axis of logarithms to base ten, labelled at as many powers of ten as its length has room for:
     /// `range` and what is drawn are exponents.
     pub(crate) fn logarithmic(look: &Look, range: (f64, f64), length: f64, title: &str) -> Self {
         let most = ((length / (2.2 * TICK_TEXT)) as usize).clamp(2, 9);
-        Self::of(look, range, decades(range.0, range.1, most), title)
+        Self::of(look, range, decades(range.0, range.1, most), title).folded(look, length)
     }
 
     fn with(look: &Look, range: (f64, f64), most: usize, title: &str) -> Self {
@@ -118,6 +144,7 @@ impl Scale {
         Self {
             range,
             ticks,
+            upward: vec![title.clone()],
             title,
             widest,
         }
@@ -158,7 +185,17 @@ impl Scale {
 
     /// Room to the left of a vertical axis with title.
     pub(crate) fn left(&self) -> f64 {
-        self.label_width() + GAP + 1.45 * TEXT
+        self.label_width() + GAP + 1.45 * TEXT + self.second_line()
+    }
+
+    /// What a second line of the title takes beside the first.
+    pub(super) fn second_line(&self) -> f64 {
+        1.2 * TEXT * (self.upward.len() - 1) as f64
+    }
+
+    /// The lines of the title beside a vertical axis, from the left.
+    pub(super) fn upward(&self) -> &[String] {
+        &self.upward
     }
 
     /// Room below a horizontal axis with title.

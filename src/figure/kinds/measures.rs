@@ -153,7 +153,7 @@ fn levels(result: &SweepResult, measure: &MeasureSeries) -> Vec<Curve> {
 /// Words of measures that the field calls otherwise than tables do.
 const TITLES: [(MeasureKind, &str); 17] = [
     (PASSAGE_MEAN, "mean time"),
-    (PASSAGE_DEVIATION, "standard deviation of the time"),
+    (PASSAGE_DEVIATION, "standard deviation"),
     (PASSAGE_KRAMERS, "Kramers' rate"),
     (PASSAGE_MELNIKOV, "Mel'nikov's rate"),
     (PASSAGE_SURVIVAL, "probability to last longer than"),

@@ -82,7 +82,29 @@ impl Track {
         }
     }
 
-    /// The range of the ordinate; `None` without a number.
+    /// A range of values with the ends of their bands, which reach beyond it by no more than thrice the middle one of
+    /// their half-widths, or as far as the values do.
+    fn with_bands(&self, (low, high): (f64, f64)) -> (f64, f64) {
+        let pairs = self
+            .curves
+            .iter()
+            .flat_map(|curve| curve.places.iter().zip(&curve.errors));
+        let band = |(place, error): (&(f64, f64), &f64)| {
+            [-1.0, 1.0].map(|side| self.end_of_band(place.1, side * error))
+        };
+        let bands: Vec<[f64; 2]> = pairs.map(band).filter(|band| band[1].is_finite()).collect();
+        let mut widths: Vec<f64> = bands.iter().map(|[low, high]| 0.5 * (high - low)).collect();
+        widths.sort_by(f64::total_cmp);
+        let middle = widths.get(widths.len() / 2).copied().unwrap_or(0.0);
+        let most = (3.0 * middle).max(high - low);
+        bands.iter().fold((low, high), |(least, largest), band| {
+            let least = least.min(band[0].max(low - most));
+            (least, largest.max(band[1].min(high + most)))
+        })
+    }
+
+    /// The range of the ordinate, with the bands of errors but for single ones that are far wider than others; `None`
+    /// without a number.
     pub(crate) fn range(&self) -> Option<(f64, f64)> {
         let values = self.curves.iter().flat_map(|curve| &curve.places);
         let values = values
@@ -94,6 +116,7 @@ impl Track {
             Some((low.min(value), high.max(value)))
         };
         let (low, high) = values.chain(zero).fold(None, join)?;
+        let (low, high) = self.with_bands((low, high));
         // Two decades hold two labels; a constant is drawn in the middle.
         let least = if self.is_logarithmic {
             2.0
@@ -213,7 +236,11 @@ pub(crate) fn draw(
             frame::border(&page, rect);
             across.draw_below(&page, rect, number + 1 == panels.len());
             up.draw_labels_left(&page, rect);
-            write_title(&page, (rect, up.title()), (is_above, labels_wide));
+            let title = (
+                up.title(),
+                letters::text_width(look, up.title(), TEXT, false),
+            );
+            write_title(&page, (rect, title), (is_above, labels_wide));
             if number == 0 {
                 let above_title = Rectangle {
                     top: rect.top - above,
@@ -230,16 +257,18 @@ pub(crate) fn draw(
     Some(Figure::new(&page, caption, table).of_panels(count))
 }
 
-/// Writes the title of an ordinate: above its panel, or beside it, in line with those of the panels above and below,
-/// whose labels are so wide.
+/// Writes the title of an ordinate, which is so wide: above its panel, in smaller letters where it is wider, or beside
+/// it, in line with those of the panels above and below, whose labels are so wide.
 fn write_title(
     page: &Page,
-    (rect, title): (Rectangle, &str),
+    (rect, (title, title_wide)): (Rectangle, (&str, f64)),
     (is_above, labels_wide): (bool, f64),
 ) {
     if is_above {
         let place = (rect.left, rect.top - 0.65 * TEXT);
-        return page.text(place, lettering(title, HPos::Left));
+        let text = lettering(title, HPos::Left);
+        let size = text.size * (rect.width / title_wide).min(1.0);
+        return page.text(place, Lettering { size, ..text });
     }
     let place = (
         rect.left - labels_wide - BETWEEN_LABELS - 0.6 * TEXT,
@@ -316,5 +345,32 @@ mod tests {
         // The error is six times the value: zero lies in the band, and so does everything below the value.
         assert_eq!(end(1e-5, -6e-5), SMALLEST.log10());
         assert!(end(1e-5, -6e-6) < -5.0 && end(1e-5, -6e-6) > -6.0);
+    }
+
+    #[test]
+    fn a_range_holds_the_bands_but_for_one_that_is_far_wider_than_others() {
+        let of = |errors: [f64; 4]| {
+            let track = Track {
+                title: String::new(),
+                is_logarithmic: false,
+                has_zero: false,
+                least: 0.0,
+                share: 1.0,
+                curves: vec![Curve {
+                    name: String::new(),
+                    stroke: Stroke::curve(0),
+                    places: vec![(0.0, 1.0), (1.0, 1.1), (2.0, 1.0), (3.0, 1.1)],
+                    errors: errors.to_vec(),
+                }],
+            };
+            track.range().unwrap()
+        };
+        let (low, high) = of([0.4, 0.5, 0.4, 0.5]);
+        assert!(
+            low < 0.6 && low > 0.4 && high > 1.6 && high < 1.8,
+            "{low} {high}"
+        );
+        let (low, high) = of([0.01, 50.0, 0.01, 0.01]);
+        assert!(low > 0.8 && high < 1.3, "{low} {high}");
     }
 }

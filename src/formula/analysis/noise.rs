@@ -1,6 +1,7 @@
 //! What state-dependent noise does to the drift.
 
-use crate::formula::graph::{Expression, Graph, Symbol, TooLarge};
+use crate::formula::arithmetic::{Binary, Unary};
+use crate::formula::graph::{Expression, Graph, Node, Symbol, TooLarge};
 
 impl Graph {
     /// The drift of the Itô equation that is the same process as the Stratonovich equation
@@ -33,6 +34,17 @@ impl Graph {
                             jumps.push(jump);
                         }
                     }
+                    let root = (other == axis).then(|| self.square_of_root(strength, axis));
+                    if let Some(square) = root.transpose()?.flatten() {
+                        // ½ b b' = ¼ (b²)', which has a value where b² is zero and b' has none.
+                        let slope = self.derivative(square, Symbol::State(axis))?.value;
+                        *drift = self.build(|builder| {
+                            let quarter = builder.constant(0.25);
+                            let term = builder.product(quarter, slope);
+                            builder.sum(*drift, term)
+                        })?;
+                        continue;
+                    }
                     *drift = self.build(|builder| {
                         let half = builder.constant(0.5);
                         let product = builder.product(strength, derivative.value);
@@ -44,4 +56,62 @@ impl Graph {
         }
         Ok((corrected, jumps))
     }
+
+    /// The square of an amplitude in which the root of what depends on its axis is a factor.
+    fn square_of_root(
+        &mut self,
+        amplitude: Expression,
+        axis: usize,
+    ) -> Result<Option<Expression>, TooLarge> {
+        let Some(parts) = self.parts_of_root(amplitude) else {
+            return Ok(None);
+        };
+        let slope = self.derivative(parts.radicand, Symbol::State(axis))?.value;
+        if self.as_constant(slope) == Some(0.0) {
+            return Ok(None);
+        }
+        let square = self.build(|builder| {
+            let mut square = parts.radicand;
+            for &factor in &parts.factors {
+                let twice = builder.product(factor, factor);
+                square = builder.product(twice, square);
+            }
+            for &divisor in &parts.divisors {
+                let twice = builder.product(divisor, divisor);
+                square = builder.quotient(square, twice);
+            }
+            square
+        })?;
+        Ok(Some(square))
+    }
+
+    /// The first root that is a factor of an expression, and the others; their signs do not matter.
+    fn parts_of_root(&self, expression: Expression) -> Option<PartsOfRoot> {
+        let with = |of: Expression, factor: Option<Expression>, divisor: Option<Expression>| {
+            let mut parts = self.parts_of_root(of)?;
+            parts.factors.extend(factor);
+            parts.divisors.extend(divisor);
+            Some(parts)
+        };
+        match self.node(expression) {
+            Node::Unary(Unary::Sqrt, radicand) => Some(PartsOfRoot {
+                radicand,
+                factors: Vec::new(),
+                divisors: Vec::new(),
+            }),
+            Node::Unary(Unary::Negate, of) => self.parts_of_root(of),
+            Node::Binary(Binary::Divide, above, below) => with(above, None, Some(below)),
+            Node::Binary(Binary::Multiply, a, b) => {
+                with(a, Some(b), None).or_else(|| with(b, Some(a), None))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// An expression as a root times factors over divisors.
+struct PartsOfRoot {
+    radicand: Expression,
+    factors: Vec<Expression>,
+    divisors: Vec<Expression>,
 }
