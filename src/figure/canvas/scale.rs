@@ -99,8 +99,10 @@ impl Scale {
     fn folded(mut self, look: &Look, length: f64) -> Self {
         let wide = |text: &str| letters::text_width(look, text, TEXT, false);
         if wide(&self.title) > length + OVER {
-            let is_between =
-                |at: &usize| self.title[..*at].matches(['$', '{', '}']).count() % 2 == 0;
+            let is_between = |at: &usize| {
+                let signs = self.title[..*at].matches(['$', '{', '}']);
+                signs.count().is_multiple_of(2)
+            };
             let spaces = self
                 .title
                 .match_indices(' ')
