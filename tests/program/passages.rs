@@ -153,6 +153,7 @@ fn wrong_questions_are_refused_with_their_place_and_a_remedy() {
         ("start = { x = 0 }", "start = { y = 0 }", ["`y` is no coordinate", "no axis"]),
         ("start = { x = 0 }", "start = { x = 0 }, from = \"near\"", ["one is enough", "leave"]),
         ("until = \"far\", ", "", ["does not say where it ends", "leave"]),
+        ("x = \"-k x\"", "x = \"-k x + cos(t)\"", ["under a periodic force", "leave [passage] out"]),
         ("times = [1, 0.5]", "times = [-1]", ["times", "greater than zero"]),
         ("quantiles = [0.5]", "quantiles = [1.5]", ["quantiles", "between 0 and 1"]),
         ("[figures]", "[method]\nkind = \"sgcm\"\n[figures]", ["worked out by `generator`", "sgcm"]),

@@ -121,8 +121,11 @@ impl Track {
         let least = if self.is_logarithmic {
             2.0
         } else {
-            let rounding = 1e-9 * low.abs().max(high.abs());
-            rounding.max(1e-12).max(self.least)
+            let size = low.abs().max(high.abs());
+            let is_constant = high - low <= 1e-9 * size;
+            // Labels of a constant have few digits.
+            let share = if is_constant { 0.2 } else { 1e-9 };
+            (share * size).max(1e-12).max(self.least)
         };
         let missing = (0.5 * (least - (high - low))).max(0.0);
         let border = BORDER * (high - low + 2.0 * missing);
@@ -349,7 +352,8 @@ mod tests {
 
     #[test]
     fn a_range_holds_the_bands_but_for_one_that_is_far_wider_than_others() {
-        let of = |errors: [f64; 4]| {
+        let of = |values: [f64; 4], errors: [f64; 4]| {
+            let places = values.iter().enumerate();
             let track = Track {
                 title: String::new(),
                 is_logarithmic: false,
@@ -359,18 +363,22 @@ mod tests {
                 curves: vec![Curve {
                     name: String::new(),
                     stroke: Stroke::curve(0),
-                    places: vec![(0.0, 1.0), (1.0, 1.1), (2.0, 1.0), (3.0, 1.1)],
+                    places: places.map(|(at, &value)| (at as f64, value)).collect(),
                     errors: errors.to_vec(),
                 }],
             };
             track.range().unwrap()
         };
-        let (low, high) = of([0.4, 0.5, 0.4, 0.5]);
+        let values = [1.0, 1.1, 1.0, 1.1];
+        let (low, high) = of(values, [0.4, 0.5, 0.4, 0.5]);
         assert!(
             low < 0.6 && low > 0.4 && high > 1.6 && high < 1.8,
             "{low} {high}"
         );
-        let (low, high) = of([0.01, 50.0, 0.01, 0.01]);
+        let (low, high) = of(values, [0.01, 50.0, 0.01, 0.01]);
         assert!(low > 0.8 && high < 1.3, "{low} {high}");
+        // What is constant but for rounding has labels of few digits.
+        let (low, high) = of([-0.5, -0.5, -0.5 - 1e-12, -0.5], [0.0; 4]);
+        assert!(high - low > 0.1, "{low} {high}");
     }
 }

@@ -33,6 +33,15 @@ pub(super) fn read(
     }
     let named = given.len();
     check_method(reader, draft);
+    if model.phase_axis().is_some()
+        && let Some(first) = draft.passages.first()
+    {
+        let title = "times of first passage are not worked out under a periodic force";
+        let found = Diagnostic::new(title).remedy("leave [passage] out, or the force");
+        let place = reader.key_place(&["passage", &first.name]);
+        reader.report(found.at(place, "this passage"));
+        return (Vec::new(), Vec::new());
+    }
     let mut asked = Vec::new();
     for passage in &draft.passages {
         if !check_name(&passage.name) {
