@@ -21,6 +21,11 @@ pub(super) fn detection(
     doubt: f64,
 ) -> Detection {
     let mut features = features(profile, limits);
+    // What lies beyond the ends of the range makes all heights too large by its share.
+    for feature in &mut features {
+        let beyond = density.truncation.share * feature.density;
+        feature.errors.density = feature.errors.density.map(|error| error + beyond);
+    }
     features.sort_by(by_kind_and_height);
     let indicators = at_centre(density);
     // Where a split is nearer than rounding lets its peaks be told apart, the centre decides.

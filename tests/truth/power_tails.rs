@@ -1,6 +1,7 @@
 //! Noise that grows with the state: densities that fall like powers, whose moments lie beyond any range.
 
 use pbif::continuation::Finding;
+use pbif::topology::{DetectOptions, Detector, PersistenceDetector};
 
 use crate::common::sweeps::{measure, solved};
 
@@ -78,5 +79,20 @@ fn a_deviation_that_does_not_exist_has_no_error_and_the_power_is_told() {
     assert!(
         powers.len() == 1 && (powers[0] - (1.0 + 2.0 / (s * s))).abs() < 0.1,
         "{powers:?}"
+    );
+}
+
+#[test]
+fn the_error_of_a_height_holds_what_is_beyond_the_range() {
+    // With s² = 2/3 the density is (0.2 + s² x²)^-2 but for a factor: at 0 it is 2 s/(π √0.2).
+    let s = (2.0_f64 / 3.0).sqrt();
+    let (_, point) = solved(&growing(""), "", Some(s));
+    let exact = 2.0 * s / (std::f64::consts::PI * 0.2_f64.sqrt());
+    let detector = PersistenceDetector::new(DetectOptions::default(), 1);
+    let peak = detector.detect(&point.densities[0]).features.remove(0);
+    let (off, error) = ((peak.density - exact).abs(), peak.errors.density.unwrap());
+    assert!(
+        off <= error && error < 4.0 * off,
+        "off by {off:e}, error {error:e}"
     );
 }
