@@ -222,7 +222,7 @@ fn a_split_in_a_range_that_is_not_symmetric_is_located() {
     let (_, result) = swept(
         "[system.equations]\nx = \"y\"\ny = \"-y + a x - x^3\"\n[system.noise]\ny = \"sqrt(0.8)\"\n\
          [sweep]\nparameter = \"a\"\nfrom = -0.5\nto = 0.6\npoints = 5\n\
-         [cells]\nx = { from = -3.0, to = 2.9, count = 50 }\ny = { from = -3.0, to = 2.8, count = 50 }\n\
+         [cells]\nx = { from = -3.1, to = 3.0, count = 50 }\ny = { from = -3.2, to = 3.0, count = 50 }\n\
          [detect]\nmarginals = [\"x\"]\njoint = []\n",
         "",
     );
