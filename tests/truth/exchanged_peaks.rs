@@ -86,8 +86,8 @@ joint = []
 }
 
 #[test]
-#[ignore = "at_length: half a minute for closer looks on up to four times as many cells"]
-fn a_crater_that_closes_does_not_take_a_peak_with_it() {
+#[ignore = "half a minute for closer looks on up to four times as many cells"]
+fn a_crater_that_closes_does_not_take_a_peak_with_it_at_length() {
     // Down the gradient of U = (x² + y² - 1)² + k x + 0.3 (x² - y²) and around along its level lines: exp(-U/T).
     let text = r#"
 [system.equations]
