@@ -237,6 +237,11 @@ impl Scene<'_> {
         let [first, second] = sides
             .each_ref()
             .map(|side| caption::parameter_named(self.family, &side.parameter));
+        // What is next to nothing in the box is zero but for rounding.
+        let value = |value: f64, side: usize| match sides[side].length() {
+            length if value.abs() < 1e-9 * length => 0.0,
+            _ => symbols::rounded(value),
+        };
         let Some(curve) = self.curves.first() else {
             let what = match self.levels.curves.first() {
                 Some(curve) => format!("Where {}", curve.words()),
@@ -245,7 +250,7 @@ impl Scene<'_> {
             return format!(
                 "{what} in the plane of {first} and {second}, begun at {} at {first} = {}.",
                 self.row.label,
-                symbols::rounded(self.row.value),
+                value(self.row.value, 0),
             );
         };
         let errors = curve.points.iter().map(|point| point.error);
@@ -256,13 +261,13 @@ impl Scene<'_> {
             curve.kind.name(),
             caption::density(self.family, curve.observable),
             self.row.label,
-            symbols::rounded(self.row.value),
+            value(self.row.value, 0),
         );
         for end in &curve.ends {
             text += &format!(" {}: {}.", end.label, end.reason.words(&curve.plane));
         }
         for point in codimension_two(self.curves) {
-            let [x, y] = point.values.map(symbols::rounded);
+            let [x, y] = [0, 1].map(|side| value(point.values[side], side));
             text += &format!(
                 " {}: {}, at {first} = {x}, {second} = {y}.",
                 point.label,
