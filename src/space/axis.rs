@@ -178,7 +178,7 @@ impl Axis {
             nodes,
             pieces,
             series: None,
-            layout: once(),
+            layout: 1.0,
             closes: false,
         }
     }

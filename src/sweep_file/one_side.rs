@@ -90,10 +90,8 @@ impl Settings {
         let mut ranges: Vec<(f64, f64)> = axes.map(|axis| pilot_box(axis.ends)).collect();
         let upper: Vec<f64> = ranges.iter().map(|range| range.1).collect();
         let has_none = |&axis: &usize| {
-            let noises = corners.iter().flat_map(|system| system.noises_on(axis));
-            noises
-                .into_iter()
-                .any(|noise| !noise.at(0.0, &upper).is_finite())
+            let mut noises = corners.iter().flat_map(|system| system.noises_on(axis));
+            noises.any(|noise| !noise.at(0.0, &upper).is_finite())
         };
         let ended: Vec<usize> = kept.iter().copied().filter(has_none).collect();
         self.end_where_noise_dies(&ended, corners, &mut ranges);

@@ -216,7 +216,8 @@ fn sampled_paths_turn_back_at_walls() {
 }
 
 /// The reflection of a noisy oscillator is found though its range is not a mirror image of itself: also between closed
-/// ends, which the check of what leaves the range puts where the range ends. The split is at a = 0.
+/// ends, which the check of what leaves the range puts where the range ends. The split is at a = 0. What leaves
+/// the range, counted twice, moves the value by less than the tolerance.
 #[test]
 fn a_split_in_a_range_that_is_not_symmetric_is_located() {
     let (_, result) = swept(

@@ -34,8 +34,11 @@ impl Graph {
                             jumps.push(jump);
                         }
                     }
-                    let root = (other == axis).then(|| self.square_of_root(strength, axis));
-                    if let Some(square) = root.transpose()?.flatten() {
+                    let square = match other == axis {
+                        true => self.square_of_root(amplitude, axis)?,
+                        false => None,
+                    };
+                    if let Some(square) = square {
                         // ½ b b' = ¼ (b²)', which has a value where b² is zero and b' has none.
                         let slope = self.derivative(square, Symbol::State(axis))?.value;
                         *drift = self.build(|builder| {

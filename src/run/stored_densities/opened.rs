@@ -1,0 +1,168 @@
+//! A store of densities while its arrays are looked up: which it has, and whether they are those of the run.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use super::{Observed, StoredKink, unreadable};
+use crate::density::{NEGLIGIBLE, Observable, layout_axis};
+use crate::run::place::check_files;
+use crate::run::zarr::StoredArray;
+use crate::run::{RunError, arrays};
+use crate::space::{Axis, CellSpace};
+use crate::system::Family;
+
+/// A store while its arrays are looked up.
+pub(super) struct Opened {
+    path: PathBuf,
+    /// Names of all arrays, sorted.
+    names: Vec<String>,
+}
+
+impl Opened {
+    pub(super) fn new(path: &Path) -> Result<Self, RunError> {
+        // Pipes would be waited for.
+        check_files(path)?;
+        let entries = std::fs::read_dir(path).map_err(|error| unreadable(path, error))?;
+        let mut names: Vec<String> = entries
+            .flatten()
+            .filter(|entry| entry.path().is_dir())
+            .map(|entry| entry.file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort_by_key(|name| (name.len(), name.clone()));
+        Ok(Self {
+            path: path.to_owned(),
+            names,
+        })
+    }
+
+    fn has(&self, name: &str) -> bool {
+        self.names.iter().any(|known| known == name)
+    }
+
+    fn array(&self, name: &str) -> Result<StoredArray, RunError> {
+        StoredArray::open(&self.path.join(name))
+            .map_err(|error| unreadable(&self.path, format!("array `{name}`: {error}")))
+    }
+
+    fn optional(&self, name: &str, shape: &[u64]) -> Result<Option<StoredArray>, RunError> {
+        self.has(name).then(|| self.shaped(name, shape)).transpose()
+    }
+
+    /// An array whose last dimensions must be `shape`, behind that of the parameter.
+    fn shaped(&self, name: &str, shape: &[u64]) -> Result<StoredArray, RunError> {
+        let array = self.array(name)?;
+        let found = array.shape();
+        if found.len() <= shape.len() || !found.ends_with(shape) {
+            let words = format!("array `{name}` has shape {found:?}, not (parameter, {shape:?})");
+            return Err(unreadable(&self.path, words));
+        }
+        Ok(array)
+    }
+
+    pub(super) fn whole(&self, name: &str) -> Result<Vec<f64>, RunError> {
+        let line = self.array(name)?.line();
+        line.map_err(|error| unreadable(&self.path, format!("array `{name}`: {error}")))
+    }
+
+    pub(super) fn observed(
+        &self,
+        family: &Family,
+        (space, bins): (&CellSpace, &[Axis]),
+        observable: Observable,
+    ) -> Result<Observed, RunError> {
+        let name = arrays::density(family, observable);
+        if !self.has(&name) {
+            return Err(RunError::NotStored {
+                observable: observable.name(family),
+                stored: self.stored(),
+            });
+        }
+        let numbers = observable.axes();
+        let known = || space.axes().iter().chain(bins);
+        let of = |&axis: &usize| known().nth(axis).map(layout_axis);
+        let axes: Vec<Axis> = numbers.iter().filter_map(of).collect();
+        for (&number, axis) in numbers.iter().zip(&axes) {
+            if self.whole(&arrays::edges(family.axis(number)))? != axis.edges() {
+                return Err(RunError::Cells {
+                    path: self.path.clone(),
+                    axis: family.axis(number).to_owned(),
+                });
+            }
+        }
+        let shape: Vec<u64> = axes.iter().map(|axis| axis.count() as u64).collect();
+        let density = self.shaped(&name, &shape)?;
+        // A quantity may have been given another formula under the same name.
+        let formulas = density.attributes().get(arrays::FORMULAS);
+        if formulas != arrays::formulas(family, observable).as_ref() {
+            return Err(RunError::OtherFormula {
+                observable: observable.name(family),
+            });
+        }
+        let centre = density.attributes().get(arrays::CENTRE);
+        let centre = centre.and_then(Value::as_array).map(|centre| {
+            let numbers = centre.iter().filter_map(Value::as_f64);
+            numbers.collect::<Vec<f64>>()
+        });
+        let negligible = density.attributes().get(arrays::NEGLIGIBLE);
+        let negligible = negligible.and_then(Value::as_f64);
+        Ok(Observed {
+            observable,
+            error: self.shaped(&arrays::error(family, observable), &shape)?,
+            second: self.optional(&arrays::second(family, observable), &shape)?,
+            truncated: self.optional(&arrays::truncated(family, observable), &[])?,
+            closed: self.optional(&arrays::closed(family, observable), &shape)?,
+            replicates: self.optional(&arrays::replicates(family, observable), &shape)?,
+            centre: centre.filter(|centre| centre.len() == axes.len()),
+            kinks: self.kinks(family, observable, &shape)?,
+            negligible: negligible.unwrap_or(NEGLIGIBLE),
+            axes,
+            density,
+        })
+    }
+
+    /// The kinks of a density in the order of their numbers.
+    fn kinks(
+        &self,
+        family: &Family,
+        observable: Observable,
+        shape: &[u64],
+    ) -> Result<Vec<StoredKink>, RunError> {
+        let prefix = arrays::kink_prefix(family, observable);
+        let names = self.names.iter().filter(|name| name.starts_with(&prefix));
+        names
+            .map(|name| {
+                let array = self.array(name)?;
+                let attributes = array.attributes();
+                let axis = attributes.get(arrays::KINK_AXIS).and_then(Value::as_str);
+                let axes = observable.axes();
+                let axis = axes.iter().position(|&a| Some(family.axis(a)) == axis);
+                let at = attributes.get(arrays::KINK_AT).and_then(Value::as_f64);
+                let bends = attributes.contains_key(arrays::KINK_BENDS);
+                let (Some(axis), Some(at)) = (axis, at) else {
+                    let words = format!("array `{name}` does not say on which plane it stands");
+                    return Err(unreadable(&self.path, words));
+                };
+                let mut rest = shape.to_vec();
+                rest.remove(axis);
+                let jump = self.shaped(name, &rest)?;
+                Ok(StoredKink {
+                    axis,
+                    at,
+                    bends,
+                    jump,
+                })
+            })
+            .collect()
+    }
+
+    /// Names of the observables that the store has.
+    fn stored(&self) -> Vec<String> {
+        let names = self.names.iter();
+        names
+            .filter_map(|name| name.strip_prefix("p_"))
+            .filter(|name| self.has(&format!("p_{name}_error")))
+            .map(str::to_owned)
+            .collect()
+    }
+}
