@@ -260,8 +260,8 @@ fn a_hysteretic_oscillator_keeps_its_mass_within_the_walls() {
 /// y' = -κ y + f(x) + √s ξ with a force that bends at c: the density is exp(-2κ/s (y²/2 + V(x))).
 const BENT: (f64, f64, f64) = (0.8, 0.6, 0.177);
 
-/// By how much the slope of log p at the bend is off, on the line of cells above y = 0: the mean of the slopes there of
-/// the parabolas through the errors of three cells on either side.
+/// By how much the slope of log p at the bend is off, on the line of cells above y = 0: the larger one of the slopes
+/// there of the parabolas through the errors of three cells on either side.
 fn slope_error_at_bend(count: usize) -> f64 {
     let (kappa, s, c) = BENT;
     let model = TypedModel::new("bent", "A force that bends", ["x", "y"])
@@ -289,7 +289,7 @@ fn slope_error_at_bend(count: usize) -> f64 {
         (2.0 * near - 3.0 * middle + far) / axis.width(cells[0])
     };
     let below = slope([above - 1, above - 2, above - 3]);
-    0.5 * (below - slope([above, above + 1, above + 2])).abs()
+    below.abs().max(slope([above, above + 1, above + 2]).abs())
 }
 
 /// Stencils across the bend make it an error of order one, of 2e-2 on 90 cells.
@@ -297,5 +297,5 @@ fn slope_error_at_bend(count: usize) -> f64 {
 fn the_slope_where_a_force_bends_is_of_order_two() {
     let [coarse, fine] = [60, 90].map(slope_error_at_bend);
     let order = (coarse / fine).ln() / 1.5_f64.ln();
-    assert!(order > 1.8 && fine < 1.5e-3, "{coarse:e} {fine:e}: {order}");
+    assert!(order > 1.8 && fine < 7e-3, "{coarse:e} {fine:e}: {order}");
 }

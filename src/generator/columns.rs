@@ -1,5 +1,7 @@
 //! The columns of the generator from the fluxes of the grid lines.
 
+use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -24,7 +26,7 @@ pub(super) enum AxisRates {
 /// A generator before its columns are laid out: what moves along the lines of every axis.
 pub(crate) struct LineRates {
     pub(super) axes: Vec<AxisGeometry>,
-    strides: Vec<usize>,
+    pub(super) strides: Vec<usize>,
     /// One an axis.
     pub(super) rates: Vec<AxisRates>,
     cells: usize,
@@ -39,6 +41,11 @@ impl LineRates {
             axes,
             cells,
         }
+    }
+
+    /// Whether there are planes past which no stencil reaches.
+    pub(crate) fn has_breaks(&self) -> bool {
+        self.axes.iter().any(|axis| !axis.breaks.is_empty())
     }
 
     /// The matrix and the escape.
@@ -91,17 +98,16 @@ impl LineRates {
 
     /// Q x, summed as by the columns of the matrix, to the bit.
     pub(crate) fn product(&self, x: &[f64]) -> Vec<f64> {
-        let most = self
-            .axes
-            .iter()
-            .map(|axis| axis.count().min(2 * axis.reach + 1));
-        let most = 1 + most.sum::<usize>();
-        let (mut rows, mut values) = (vec![0_usize; most], vec![0.0; most]);
+        let (mut all_rows, mut all_values) = (Vec::new(), Vec::new());
         let mut product = vec![0.0; x.len()];
         let mut place = self.place(0);
         for (cell, weight) in x.iter().enumerate() {
             let entries = self.entries(&place);
-            let (rows, values) = (&mut rows[..entries], &mut values[..entries]);
+            if all_rows.len() < entries {
+                all_rows.resize(entries, 0);
+                all_values.resize(entries, 0.0);
+            }
+            let (rows, values) = (&mut all_rows[..entries], &mut all_values[..entries]);
             self.fill(cell, &place, rows, values);
             for (&row, value) in rows.iter().zip(&*values) {
                 product[row] += value * weight;
@@ -113,7 +119,7 @@ impl LineRates {
 }
 
 /// Positions of a cell along all axes.
-type Coordinates = [usize; MAX_DIMENSION];
+pub(super) type Coordinates = [usize; MAX_DIMENSION];
 
 impl LineRates {
     /// The place of a cell.
@@ -139,14 +145,58 @@ impl LineRates {
 
     /// Number of entries of a column.
     fn entries(&self, place: &Coordinates) -> usize {
+        let sides = self.sides(place);
+        let across = sides.iter().map(|side| self.entries_of_side(place, side));
+        self.entries_of_star(place) + across.sum::<usize>()
+    }
+
+    /// Number of cells on the lines through a cell that its column reaches.
+    fn entries_of_star(&self, place: &Coordinates) -> usize {
         let along = |(geometry, &position): (&AxisGeometry, &usize)| {
             position.min(geometry.reach) + (geometry.count() - 1 - position).min(geometry.reach)
         };
         1 + self.axes.iter().zip(place).map(along).sum::<usize>()
     }
 
+    /// Positions along an axis that a column of the matrix may reach.
+    pub(super) fn reached(&self, place: &Coordinates, axis: usize) -> Range<usize> {
+        let (position, geometry) = (place[axis], &self.axes[axis]);
+        let end = (position + geometry.reach + 1).min(geometry.count());
+        position.saturating_sub(geometry.reach)..end
+    }
+
     /// Writes a column, rows ascending, and returns its escape rate.
     fn fill(
+        &self,
+        cell: usize,
+        place: &Coordinates,
+        rows: &mut [usize],
+        values: &mut [f64],
+    ) -> f64 {
+        let sides = self.sides(place);
+        if sides.is_empty() {
+            return self.fill_star(cell, place, rows, values);
+        }
+        let star = self.entries_of_star(place);
+        let escape = self.fill_star(cell, place, &mut rows[..star], &mut values[..star]);
+        let found = rows[..star]
+            .iter()
+            .copied()
+            .zip(values[..star].iter().copied());
+        let mut all: BTreeMap<usize, f64> = found.collect();
+        for side in &sides {
+            self.each_of_side(cell, place, side, |row, rate| {
+                *all.entry(row).or_insert(0.0) += rate
+            });
+        }
+        for ((row, value), found) in rows.iter_mut().zip(values).zip(all) {
+            (*row, *value) = found;
+        }
+        escape
+    }
+
+    /// Writes what moves along the lines through a cell.
+    fn fill_star(
         &self,
         cell: usize,
         place: &Coordinates,
@@ -184,11 +234,11 @@ impl LineRates {
 
     /// Tells the rates from a cell into the cells at some positions along an axis, and returns the rate into the sink
     /// through the axis's ends.
-    fn each_rate(
+    pub(super) fn each_rate(
         &self,
         place: &Coordinates,
         axis: usize,
-        positions: std::ops::Range<usize>,
+        positions: Range<usize>,
         mut tell: impl FnMut(usize, f64),
     ) -> f64 {
         let (count, position) = (self.axes[axis].count(), place[axis]);

@@ -29,6 +29,16 @@ pub(super) struct FaceStencil {
     pub(super) corrected: bool,
 }
 
+/// An inner face on which a derivative of the density jumps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Break {
+    /// Its number, that of the cell above it.
+    pub(super) face: usize,
+    /// Where the slope of the density jumps, as it does with a force: how the slope on either side is taken of the
+    /// nodes, from the plane on. Where a force bends it is the second derivative that jumps.
+    pub(super) slope: Option<[f64; REACH]>,
+}
+
 /// An axis with its stencils.
 #[derive(Debug, Clone)]
 pub(super) struct AxisGeometry {
@@ -49,7 +59,7 @@ pub(super) struct AxisGeometry {
     /// Cells on either side that an entry of the matrix may reach.
     pub(super) reach: usize,
     /// Inner faces on which a derivative of the density jumps, past which no stencil of a flux reaches.
-    pub(super) breaks: Vec<usize>,
+    pub(super) breaks: Vec<Break>,
     /// Of each face of an axis with noise, whether its stencil reaches across a switching surface: there the density
     /// has a kink, and its product with the fitted exponential has none.
     pub(super) is_across: Vec<bool>,
@@ -72,7 +82,7 @@ impl AxisGeometry {
         // Where no noise acts, a derivative of the density jumps with the drift or its slope.
         let breaks = match noisy || axis.is_modes() {
             true => Vec::new(),
-            false => breaks(system, index, space),
+            false => breaks(system, index, space, scheme),
         };
         let kinks = match noisy && !axis.is_modes() {
             true => surface_faces(system, index, axis),
@@ -105,7 +115,7 @@ impl AxisGeometry {
 
     /// The break that a cell has on one of its faces.
     pub(super) fn break_beside(&self, cell: usize) -> Option<usize> {
-        let mut breaks = self.breaks.iter().copied();
+        let mut breaks = self.breaks.iter().map(|one| one.face);
         breaks.find(|&face| face == cell || face == cell + 1)
     }
 
@@ -174,21 +184,30 @@ pub(super) fn surface_faces(system: &dyn System, index: usize, axis: &Axis) -> V
 /// Inner faces of an axis without noise on which what drives other axes jumps or bends most, each with as many cells as
 /// a stencil takes on either side before the next one or an end. The others are left to stencils across them, and so
 /// are those at which the drift along the axis itself is not smooth: what flows through them may stop there.
-fn breaks(system: &dyn System, index: usize, space: &CellSpace) -> Vec<usize> {
+fn breaks(
+    system: &dyn System,
+    index: usize,
+    space: &CellSpace,
+    scheme: AdvectiveScheme,
+) -> Vec<Break> {
     let axis = &space.axes()[index];
-    let mut found: Vec<(f64, usize)> = surface_faces(system, index, axis)
+    let mut found: Vec<(f64, Break)> = surface_faces(system, index, axis)
         .into_iter()
         .filter(|face| (REACH..=axis.count().saturating_sub(REACH)).contains(face))
-        .filter_map(|face| Some((sharpness(system, (index, face), space)?, face)))
+        .filter_map(|face| {
+            let (sharpness, jumps) = sharpness(system, (index, face), space)?;
+            let slope = jumps.then(|| scheme.slope());
+            Some((sharpness, Break { face, slope }))
+        })
         .collect();
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut kept: Vec<usize> = Vec::new();
-    for (_, face) in found {
-        if kept.iter().all(|other| other.abs_diff(face) >= REACH) {
-            kept.push(face);
+    let mut kept: Vec<Break> = Vec::new();
+    for (_, one) in found {
+        if (kept.iter()).all(|other| other.face.abs_diff(one.face) >= REACH) {
+            kept.push(one);
         }
     }
-    kept.sort_unstable();
+    kept.sort_unstable_by_key(|one| one.face);
     kept
 }
 
@@ -198,12 +217,17 @@ const ASIDE: f64 = 1e-4;
 const SMOOTH: f64 = 1e-2;
 
 /// By how much the drift along other axes changes its slope at a face, in changes over a cell; a jump counts for more.
-/// At the middle of the other axes and at two places aside. `None` where all is smooth, and where the drift along the
-/// axis is not.
-fn sharpness(system: &dyn System, (index, face): (usize, usize), space: &CellSpace) -> Option<f64> {
+/// At the middle of the other axes and at two places aside. With it comes whether a drift jumps. `None` where all is
+/// smooth, and where the drift along the axis is not.
+fn sharpness(
+    system: &dyn System,
+    (index, face): (usize, usize),
+    space: &CellSpace,
+) -> Option<(f64, bool)> {
     let axis = &space.axes()[index];
     let step = ASIDE * axis.width(face);
     let mut sharpest: Option<f64> = None;
+    let mut jumps = false;
     for share in [0.31, 0.5, 0.73] {
         let ends = space.axes().iter();
         let mut state: Vec<f64> = ends
@@ -221,12 +245,15 @@ fn sharpness(system: &dyn System, (index, face): (usize, usize), space: &CellSpa
             let size = of(&below).abs() + (slopes[0].abs() + slopes[1].abs()) / ASIDE;
             match (change > SMOOTH * size, component == index) {
                 (true, true) => return None,
-                (true, false) => sharpest = Some(sharpest.map_or(change, |one| one.max(change))),
+                (true, false) => {
+                    sharpest = Some(sharpest.map_or(change, |one| one.max(change)));
+                    jumps |= jump.abs() > SMOOTH * size;
+                }
                 (false, _) => {}
             }
         }
     }
-    sharpest
+    Some((sharpest?, jumps))
 }
 
 /// Share of the upwind scheme's dissipation that the cells of a space need.
@@ -245,7 +272,7 @@ fn stencil(
     scheme: AdvectiveScheme,
     damping: f64,
     (face, count): (usize, usize),
-    breaks: &[usize],
+    breaks: &[Break],
 ) -> FaceStencil {
     let (below, above) = (face, count - face);
     let cells = below.min(above);
@@ -270,19 +297,18 @@ fn beside_breaks(
     scheme: AdvectiveScheme,
     face: usize,
     count: usize,
-    breaks: &[usize],
+    breaks: &[Break],
 ) -> Option<(Window, Window)> {
-    let is_near = |at: &&usize| at.abs_diff(face) < REACH;
+    let is_near = |at: &&Break| at.face.abs_diff(face) < REACH;
     breaks.iter().find(is_near)?;
     if face == 0 || face == count {
         return None;
     }
-    let last = breaks.iter().filter(|at| **at < face).max();
-    let next = breaks.iter().filter(|at| **at > face).min();
-    let below = face - last.copied().unwrap_or(0);
-    let above = next.copied().unwrap_or(count) - face;
-    match breaks.contains(&face) {
-        true => Some(scheme.at_break()),
-        false => scheme.one_sided(below, above),
+    let faces = || breaks.iter().map(|at| at.face);
+    let below = face - faces().filter(|at| *at < face).max().unwrap_or(0);
+    let above = faces().filter(|at| *at > face).min().unwrap_or(count) - face;
+    match breaks.iter().find(|at| at.face == face) {
+        Some(at) => Some(scheme.at_break(at.slope.is_some())),
+        None => scheme.one_sided(below, above),
     }
 }

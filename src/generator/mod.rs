@@ -33,6 +33,7 @@ mod columns;
 mod derivative;
 mod geometry;
 mod grading;
+mod jumps;
 mod line;
 mod masses;
 mod modes;

@@ -18,9 +18,6 @@ pub(super) fn quadrature_points(axis: &AxisGeometry) -> Vec<f64> {
 /// Distance from a plane at which its sides are told apart, as a share of the distance of the nodes on both sides.
 const BESIDE: f64 = 1e-9;
 
-/// A difference that is a smaller share of a coefficient is no jump of it.
-const NO_JUMP: f64 = 1e-6;
-
 /// Evaluates drift and diffusion along grid lines, with buffers that are kept from line to line.
 pub(super) struct LineSampler<'a> {
     system: &'a dyn System,
@@ -65,7 +62,7 @@ impl<'a> LineSampler<'a> {
     /// Corrects what was sampled on a line of cells beside a plane across another axis, at which coefficients bend. The
     /// flux along that axis leaves a derivative of (h/48) y Δ(∂²p/∂x²) too much there, which by the equation is what
     /// rates that are h/48 times the jump of their slope too high make of p (`AdvectiveScheme::at_break`). Where
-    /// coefficients jump nothing is corrected.
+    /// coefficients jump, the slope of p does too, which `LineRates` makes good.
     pub(super) fn correct(
         &mut self,
         (axis, plane): (usize, f64),
@@ -89,12 +86,9 @@ impl<'a> LineSampler<'a> {
             for (index, value) in values.iter_mut().enumerate() {
                 let [below_it, left, right, above_it] =
                     [0, 1, 2, 3].map(|place: usize| sampled[place].samples()[kind][index]);
-                let size = left.abs().max(right.abs()).max(f64::MIN_POSITIVE);
-                if (right - left).abs() <= NO_JUMP * size {
-                    let bend =
-                        (above_it - right) / (above - plane) - (left - below_it) / (plane - below);
-                    *value -= width / 48.0 * bend;
-                }
+                let bend =
+                    (above_it - right) / (above - plane) - (left - below_it) / (plane - below);
+                *value -= width / 48.0 * bend;
             }
         }
         self.line = own;

@@ -16,6 +16,10 @@ pub(super) type Window = [f64; 2 * REACH];
 /// range comes back as wiggles.
 pub(super) const DAMPING_BESIDE_MODES: f64 = 0.5;
 
+/// Share of the difference of two parabolas at a break that is damped. It is a third difference: of all of it the means
+/// of oscillators are off by half as much more, of less the slopes on both sides come apart (docs/accuracy.md).
+const DAMPING_AT_BREAKS: f64 = 0.5;
+
 /// How much of the advective scheme's dissipation is kept. What two shares differ by is an error of the cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Dissipation {
@@ -78,21 +82,41 @@ impl AdvectiveScheme {
     /// the mean of what flows from below and from above, and half of what they differ by. Central minus or plus
     /// dissipation is one of them. `None` where no cell is left on one side.
     pub(super) fn one_sided(self, below: usize, above: usize) -> Option<(Window, Window)> {
+        let (below, above) = (below.min(self.reach()), above.min(self.reach()));
         let from_below = upwind((below, above))?;
         let from_above = mirrored(upwind((above, below))?);
         Some(self.between(half_sum(from_below, from_above), from_below, from_above))
     }
 
     /// The same of a face on which the density has a break, with three cells of its own on either side: the mean of the
-    /// fluxes of both sides, by the cubics through their nodes that share value and slope at the face. These are not
-    /// values at the face, but of a function whose averages over cells are the
-    /// nodes' values, and jump by a twenty-fourth of h² times the jump of the second derivative there; half of that is
-    /// missing in the cells on either side, whose rates along other axes make it good (`LineSampler`). The values at
-    /// the face are the same from both sides, and are what dissipation holds together.
-    pub(super) fn at_break(self) -> (Window, Window) {
-        let flux = [20.0, -106.0, 362.0, 0.0, 0.0, 0.0].map(|weight| weight / 276.0);
-        let value = [3.0, -10.0, 15.0, 0.0, 0.0, 0.0].map(|weight| weight / 8.0);
+    /// fluxes of both sides. Where it is the second derivative that jumps, these are of the cubics through the nodes of
+    /// a side that share value and slope at the face. Where the slope jumps, they are of parabolas, and in the central
+    /// scheme of fourth order of lines, as what both schemes share is no part of the stated error.
+    ///
+    /// Fluxes are not values at the face, but of a function whose averages over cells are the nodes' values. They jump
+    /// by a twenty-fourth of h² times the jump of the second derivative there; half of that is missing in the cells on
+    /// either side, whose rates along other axes make it good (`LineSampler`, and `jumps` where slopes jump).
+    ///
+    /// Values at the face are the same from both sides, and those of both parabolas are held together by dissipation.
+    pub(super) fn at_break(self, slope_jumps: bool) -> (Window, Window) {
+        let [far, middle, near] = match (self, slope_jumps) {
+            (_, false) => [20.0, -106.0, 362.0].map(|weight| weight / 276.0),
+            (Self::Central4, true) => [0.0, -1.0, 3.0].map(|weight| weight / 2.0),
+            (Self::Upwind5 | Self::Central6, true) => [2.0, -7.0, 11.0].map(|weight| weight / 6.0),
+        };
+        let flux = [far, middle, near, 0.0, 0.0, 0.0];
+        let value =
+            [3.0, -10.0, 15.0, 0.0, 0.0, 0.0].map(|weight| DAMPING_AT_BREAKS * weight / 8.0);
         self.between(half_sum(flux, mirrored(flux)), value, mirrored(value))
+    }
+
+    /// Weights of the slope at a face of the nodes on one side, from the face on, in cell coordinates: of the parabola
+    /// through three, or of the line through two by the central scheme of fourth order.
+    pub(super) fn slope(self) -> [f64; REACH] {
+        match self {
+            Self::Central4 => [-1.0, 1.0, 0.0],
+            Self::Upwind5 | Self::Central6 => [-2.0, 3.0, -1.0],
+        }
     }
 
     /// Central weights with the dissipation that belongs to values from either side.

@@ -22,6 +22,7 @@ mod natural_ends;
 mod passage_fields;
 mod passage_starts;
 mod passages;
+mod position_planes;
 mod power_tails;
 mod random_systems;
 mod sampled_passages;

@@ -32,18 +32,18 @@ use rand_xoshiro::Xoshiro256Plus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 /// Random numbers by a seed.
-struct Dice(Xoshiro256Plus);
+pub(crate) struct Dice(Xoshiro256Plus);
 
 impl Dice {
-    fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self(Xoshiro256Plus::seed_from_u64(seed))
     }
-    fn between(&mut self, from: f64, to: f64) -> f64 {
+    pub(crate) fn between(&mut self, from: f64, to: f64) -> f64 {
         let unit = (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
         // Three digits, so that a case can be typed in by hand.
         ((from + unit * (to - from)) * 1000.0).round() / 1000.0
     }
-    fn one_of<const N: usize>(&mut self, choices: [usize; N]) -> usize {
+    pub(crate) fn one_of<const N: usize>(&mut self, choices: [usize; N]) -> usize {
         choices[(self.0.next_u64() >> 33) as usize % N]
     }
 }

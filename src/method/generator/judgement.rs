@@ -17,13 +17,13 @@ use super::unknowns::{by_schemes, negative_mass, summed_over_modes, with_walls};
 use crate::continuation::measure::{ESCAPE_RATE, FACTORISATIONS, NEGATIVE_MASS};
 use crate::continuation::{Finding, Measure, Solution};
 use crate::density::EstimatedDensity;
-use crate::generator::{cell_masses, resolution, summed_to_walls};
+use crate::generator::{LineRates, cell_masses, resolution, summed_to_walls};
 use crate::method::forcing::Forced;
 use crate::method::measures::{Cells, Others};
 use crate::method::report::{QUIET_ESCAPE, Reporter};
 use crate::method::watched::planes;
 use crate::method::{MethodError, Problem, natural_ends};
-use crate::stationary::generator::{RateError, RateInfo};
+use crate::stationary::generator::{RateError, RateInfo, RateSolver};
 
 /// Escape per unit time below which mass is said to stay in Ω, and relaxation is not looked at.
 const NO_ESCAPE: f64 = 1e-12;
@@ -259,6 +259,12 @@ impl GeneratorSession {
             }
             (None, _) => vec![0.0; unknowns.len()],
         };
+        let change = match &solved.second {
+            Some(second) if second.has_breaks() => {
+                again(&mut self.solver, second, unknowns, change)?
+            }
+            _ => change,
+        };
         let changed: Vec<f64> = unknowns.iter().zip(&change).map(|(u, du)| u + du).collect();
         let by_second = cell_masses(system, space, &changed);
         let difference: Vec<f64> = by_second.iter().zip(masses).map(|(b, a)| b - a).collect();
@@ -278,6 +284,19 @@ impl GeneratorSession {
         });
         Ok((densities, Second { change, solved }))
     }
+}
+
+/// What the second scheme changes, with the next term of the series by the factors of the first one. At planes at which
+/// a force bends or jumps the schemes are so far apart that the first term alone is half of it.
+fn again(
+    solver: &mut RateSolver,
+    second: &LineRates,
+    unknowns: &[f64],
+    change: Vec<f64>,
+) -> Result<Vec<f64>, MethodError> {
+    let changed: Vec<f64> = unknowns.iter().zip(&change).map(|(u, du)| u + du).collect();
+    let more = solver.response(&second.product(&changed), unknowns, None, ROUGH)?;
+    Ok(change.iter().zip(more).map(|(a, b)| a + b).collect())
 }
 
 /// The numbers of a solve.
