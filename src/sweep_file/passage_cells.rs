@@ -34,7 +34,8 @@ impl Sweep {
         let asked = problem.family().questions.passages.iter();
         let found = asked.filter_map(|passage| {
             let start = settings.start_outside(passage, problem.space());
-            start.or_else(|| settings.without_cells(passage, problem.space()))
+            let start = start.or_else(|| settings.without_cells(passage, problem.space()));
+            start.or_else(|| settings.start_in_target(passage))
         });
         settings.refuse_all(found.collect())
     }
@@ -50,9 +51,7 @@ impl Settings {
         let outside = axes.find(|(_, (place, axis))| {
             !axis.is_modes() && !(axis.from()..=axis.to()).contains(*place)
         });
-        let Some((number, (place, axis))) = outside else {
-            return self.start_in_target(passage, state);
-        };
+        let (number, (place, axis)) = outside?;
         let (own, name) = (&passage.name, self.family.axis(number));
         let title = format!(
             "passage `{own}` starts at {name} = {}, outside of the cells",
@@ -65,7 +64,10 @@ impl Settings {
     }
 
     /// What is wrong with a state in which a passage starts, and ends at every value of the sweep that is looked at.
-    fn start_in_target(&self, passage: &PassageQuestion, state: &[f64]) -> Option<Diagnostic> {
+    fn start_in_target(&self, passage: &PassageQuestion) -> Option<Diagnostic> {
+        let PassageStart::State(state) = &passage.start else {
+            return None;
+        };
         let is_inside = |values: &ParameterValues| {
             let level = passage.until.level().bind(values);
             level.is_ok_and(|level| level.at(state) < 0.0)

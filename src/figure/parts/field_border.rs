@@ -1,6 +1,6 @@
 //! Fields of passages beside the border of their target, across which they may jump: along a displacement, whose
 //! equation has no noise, states that leave a region and states that enter it have different times and probabilities.
-//! So values outside of the target are led on to the border, and none is taken between both sides.
+//! So values of either side are led on to the border, and none is taken between both sides.
 
 use crate::figure::canvas::contour::beside;
 
@@ -12,8 +12,46 @@ pub(in crate::figure) struct FieldBorder<'t> {
     is_inside: Box<dyn Fn((f64, f64)) -> bool + 't>,
     /// Whether the middle of each cell is inside.
     inside: Vec<bool>,
-    /// The values outside, led on by straight lines to the cells inside that are beside them.
-    pub(in crate::figure) led_on: Vec<f64>,
+    /// The values outside, then those inside, led on by straight lines to the cells of the other side beside them.
+    led_on: [Vec<f64>; 2],
+}
+
+/// Values of cells of which some are inside, those of one side led on to the cells of the other side beside them.
+fn led_on(
+    [x, y]: [&[f64]; 2],
+    (inside, values, largest): (&[bool], &[f64], f64),
+    side: bool,
+) -> Vec<f64> {
+    let rows = y.len();
+    // The value that two cells of the side tell of a cell beside them.
+    let told = |axis: &[f64], at: usize, way: isize, number: &dyn Fn(usize) -> usize| {
+        let cell = |steps: isize| {
+            let place = at.checked_add_signed(steps * way)?;
+            (place < axis.len() && inside[number(place)] == side).then_some(place)
+        };
+        let near = cell(1)?;
+        let value = values[number(near)];
+        let slope = cell(2).map_or(0.0, |far| {
+            (value - values[number(far)]) / (axis[near] - axis[far])
+        });
+        Some((value + slope * (axis[at] - axis[near])).clamp(0.0, largest))
+    };
+    let led_on = (0..values.len()).map(|cell| {
+        let (i, j) = (cell / rows, cell % rows);
+        if inside[cell] == side {
+            return values[cell];
+        }
+        let ways = [1, -1].into_iter().flat_map(|way| {
+            let across = told(x, i, way, &|i| i * rows + j);
+            [across, told(y, j, way, &|j| i * rows + j)]
+        });
+        let told: Vec<f64> = ways.flatten().collect();
+        match told.len() {
+            0 => values[cell],
+            count => told.iter().sum::<f64>() / count as f64,
+        }
+    });
+    led_on.collect()
 }
 
 impl<'t> FieldBorder<'t> {
@@ -25,52 +63,24 @@ impl<'t> FieldBorder<'t> {
     ) -> Self {
         let states = x.iter().flat_map(|&x| y.iter().map(move |&y| (x, y)));
         let inside: Vec<bool> = states.map(&is_inside).collect();
-        let rows = y.len();
-        // The value that two cells outside tell of a cell beside them.
-        let told = |axis: &[f64], at: usize, way: isize, number: &dyn Fn(usize) -> usize| {
-            let cell = |steps: isize| {
-                let place = at.checked_add_signed(steps * way)?;
-                (place < axis.len() && !inside[number(place)]).then_some(place)
-            };
-            let near = cell(1)?;
-            let value = values[number(near)];
-            let slope = cell(2).map_or(0.0, |far| {
-                (value - values[number(far)]) / (axis[near] - axis[far])
-            });
-            Some((value + slope * (axis[at] - axis[near])).clamp(0.0, largest))
-        };
-        let led_on = (0..values.len()).map(|cell| {
-            let (i, j) = (cell / rows, cell % rows);
-            if !inside[cell] {
-                return values[cell];
-            }
-            let ways = [1, -1].into_iter().flat_map(|way| {
-                let across = told(x, i, way, &|i| i * rows + j);
-                [across, told(y, j, way, &|j| i * rows + j)]
-            });
-            let told: Vec<f64> = ways.flatten().collect();
-            match told.len() {
-                0 => values[cell],
-                count => told.iter().sum::<f64>() / count as f64,
-            }
-        });
+        let cells = (&inside[..], values, largest);
         Self {
-            led_on: led_on.collect(),
+            led_on: [false, true].map(|side| led_on([x.as_slice(), y.as_slice()], cells, side)),
             inside,
             is_inside: Box::new(is_inside),
         }
     }
 
+    /// The values outside of the target, led on into it.
+    pub(in crate::figure) fn outer(&self) -> &[f64] {
+        &self.led_on[0]
+    }
+
     /// The values that a place is between: those of its own side of the border.
-    pub(in crate::figure) fn side<'v>(
-        &'v self,
-        values: &'v [f64],
-        [x, y]: &[Vec<f64>; 2],
-        place: (f64, f64),
-    ) -> &'v [f64] {
+    pub(in crate::figure) fn side(&self, [x, y]: &[Vec<f64>; 2], place: (f64, f64)) -> &[f64] {
         let around = beside(x, place.0).zip(beside(y, place.1));
         let Some(((i, _), (j, _))) = around else {
-            return values;
+            return self.outer();
         };
         let rows = y.len();
         let corners = [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)];
@@ -80,7 +90,7 @@ impl<'t> FieldBorder<'t> {
             4 => true,
             _ => (self.is_inside)(place),
         };
-        if is_inside { values } else { &self.led_on }
+        &self.led_on[usize::from(is_inside)]
     }
 
     /// The parts of a line that lie outside of the target, up to its border.
@@ -146,7 +156,7 @@ mod tests {
             let grid = GridValues {
                 x: x_places,
                 y: y_places,
-                values: border.side(&values, &places, (x, 0.3)),
+                values: border.side(&places, (x, 0.3)),
             };
             let found = grid.between((x, 0.3)).unwrap();
             assert!((found - exact(x)).abs() < 1e-12, "{x}: {found}");

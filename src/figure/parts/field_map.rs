@@ -146,8 +146,8 @@ impl<'a> FieldMap<'a> {
         Picture::new(look, size, |column, row| {
             let place = (across[column], up[row]);
             let values = match &self.border {
-                Some(border) => border.side(&self.values, &self.places, place),
-                None => &self.values,
+                Some(border) => border.side(&self.places, place),
+                None => &self.values[..],
             };
             Some(GridValues { x, y, values }.between(place)? / largest)
         })
@@ -164,8 +164,8 @@ impl<'a> FieldMap<'a> {
     fn draw_contours(&self, look: &Look, panel: &Panel, largest: f64) {
         let [x, y] = &self.places;
         let values = match &self.border {
-            Some(border) => &border.led_on,
-            None => &self.values,
+            Some(border) => border.outer(),
+            None => &self.values[..],
         };
         let grid = GridValues { x, y, values };
         for share in LEVELS {
