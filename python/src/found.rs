@@ -394,7 +394,9 @@ impl Found {
             ([], false) => &single,
             (at, _) => at,
         };
-        let figures = Figures::of_sweep(&self.result, &settings.title, at);
+        let problem = &self.sweep.problem;
+        let figures = Figures::of_sweep(&self.result, &settings.title, at)
+            .carried_by(problem.family(), problem.space().axes());
         of(&figures.with_style(&settings.figures.style))
     }
 }

@@ -90,7 +90,10 @@ impl Plane {
                 Figures::of_curves((plane, tree), (origin, &[]), family, title)
             }
         };
-        let figures = figures.solved_by(settings.method.kind.name(), self.sweep.problem.watched());
+        let axes = self.sweep.problem.space().axes();
+        let figures = figures
+            .solved_by(settings.method.kind.name(), self.sweep.problem.watched())
+            .carried_by(family, axes);
         of(&figures.with_style(&settings.figures.style))
     }
 }

@@ -294,7 +294,12 @@ fn prepare(settings: Settings, quiet: bool) -> Result<Sweep, Report> {
     drop(part);
     // What is told of the sweep comes after it.
     let _ = teller.map(std::thread::JoinHandle::join);
-    sweep
+    let sweep = sweep?;
+    let found = sweep.passages_without_cells();
+    if !found.is_empty() && !quiet {
+        tell_styled(&found.render(is_styled()));
+    }
+    Ok(sweep)
 }
 
 /// Says something on stderr, unless it is to be quiet.

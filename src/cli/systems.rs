@@ -7,7 +7,7 @@ use comfy_table::{Table, presets};
 
 use crate::sweep_file::{Diagnostic, Report, starting_files};
 use crate::system::friction::pulled::{has_friction, shown_values};
-use crate::system::{Model, System, registry};
+use crate::system::{Model, System, in_letters, registry};
 
 /// The table of models.
 pub(super) fn list() -> String {
@@ -68,7 +68,7 @@ fn write_model(text: &mut String, model: &Model) -> std::fmt::Result {
     }
     writeln!(text, "\nAxes")?;
     for axis in &model.axes {
-        let (name, symbol, meaning) = (&axis.name, plain(&axis.symbol), &axis.meaning);
+        let (name, symbol, meaning) = (&axis.name, in_letters(&axis.symbol), &axis.meaning);
         writeln!(text, "  {name}  {meaning} ({symbol} in figures)")?;
     }
     let mut parameters = table(&["parameter", "symbol", "meaning", "allowed", "default"]);
@@ -76,7 +76,7 @@ fn write_model(text: &mut String, model: &Model) -> std::fmt::Result {
         let default = parameter.default;
         parameters.add_row([
             parameter.name.clone(),
-            plain(&parameter.symbol),
+            in_letters(&parameter.symbol),
             parameter.meaning.clone(),
             parameter.range.words().to_owned(),
             default.map_or("must be given".to_owned(), |value| value.to_string()),
@@ -192,11 +192,6 @@ fn symmetry(model: &Model, system: &dyn System) -> String {
     });
     let image: Vec<String> = image.collect();
     format!("({}) -> ({})", names.join(", "), image.join(", "))
-}
-
-/// A symbol without its markup: `f_{c}` becomes `f_c`, `σ^{2}` σ².
-fn plain(symbol: &str) -> String {
-    symbol.replace(['{', '}'], "").replace("^2", "²")
 }
 
 #[cfg(test)]

@@ -35,6 +35,7 @@ impl<'a> Figures<'a> {
             print: Print {
                 title,
                 solved_by: String::new(),
+                modes: String::new(),
                 look,
                 part: (0, 1),
             },
@@ -99,6 +100,13 @@ impl<'a> Figures<'a> {
         (family, watched): (&Family, Vec<(Observable, Vec<Axis>)>),
     ) -> Self {
         self.print.solved_by = caption::solved_by(family, method, watched);
+        self
+    }
+
+    /// The same figures, whose captions then tell which of the axes of the state, given in their order, modes carry in
+    /// place of cells, and how many: those of an internal state, of an angle, or of the phase of a forcing.
+    pub fn carried_by(mut self, family: &Family, axes: &[Axis]) -> Self {
+        self.print.modes = caption::modes(family, axes);
         self
     }
 

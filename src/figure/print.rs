@@ -80,6 +80,8 @@ pub(super) struct Print<'a> {
     pub(super) title: &'a str,
     /// Of a plane: by which method and on which cells it was solved, as captions have it; may be empty.
     pub(super) solved_by: String,
+    /// Which axes modes carry, as captions have it; may be empty.
+    pub(super) modes: String,
     pub(super) look: Look,
     /// Which of how many pages, counted from zero.
     pub(super) part: (usize, usize),

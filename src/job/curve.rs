@@ -267,6 +267,7 @@ impl Job for CurveJob<'_> {
             &settings.title,
         )
         .solved_by(settings.method.kind.name(), self.sweep.problem.watched())
+        .carried_by(family, self.sweep.problem.space().axes())
         .with_style(&settings.figures.style)
         .draw_all()
     }

@@ -71,6 +71,10 @@ impl Job for MapJob<'_> {
         let settings = &self.sweep.settings;
         Figures::of_map(found, &[], &settings.title)
             .solved_by(settings.method.kind.name(), self.sweep.problem.watched())
+            .carried_by(
+                self.sweep.problem.family(),
+                self.sweep.problem.space().axes(),
+            )
             .with_style(&settings.figures.style)
             .draw_all()
     }

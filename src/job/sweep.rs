@@ -306,6 +306,7 @@ impl From<SweepError> for JobError {
 pub(crate) fn draw_sweep(sweep: &Sweep, found: &SweepResult) -> Vec<Figure> {
     let settings = &sweep.settings;
     Figures::of_sweep(found, &settings.title, &settings.figures.at)
+        .carried_by(sweep.problem.family(), sweep.problem.space().axes())
         .with_style(&settings.figures.style)
         .draw_named(settings.figures.names())
 }

@@ -52,6 +52,7 @@ mod memory;
 mod names;
 mod no_range;
 mod one_side;
+mod passage_cells;
 mod prepare;
 mod reader;
 mod report;

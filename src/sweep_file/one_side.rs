@@ -14,6 +14,8 @@ const PARTS: usize = 16;
 /// Parts of a range in which a zero of a noise is looked for, and halvings that lead to neighbouring numbers.
 const LOOKS: usize = 400;
 const HALVINGS: usize = 80;
+/// How often an end is looked for four times as far away.
+const FARTHER: i32 = 6;
 
 impl Settings {
     /// Gives axes of which no end is known, and whose zero no path crosses downward anywhere along the sweep, the end 0
@@ -99,6 +101,31 @@ impl Settings {
             let end = ranges[axis].1;
             self.axes[axis].ends[1] = Some(end).filter(|end| *end < upper[axis]);
         }
+    }
+
+    /// The same where no range was found, because paths from beyond an end at which the noise dies run away: says
+    /// whether any range has an end now. Ends are looked for farther and farther away.
+    pub(super) fn end_where_paths_ran_away(
+        &mut self,
+        kept: &[usize],
+        corners: &[Arc<dyn System>],
+    ) -> bool {
+        let axes = self.axes.iter();
+        let start: Vec<(f64, f64)> = axes.map(|axis| pilot_box(axis.ends)).collect();
+        (0..FARTHER).any(|power| {
+            let mut ranges = start.clone();
+            for &axis in kept {
+                ranges[axis].1 *= 4_f64.powi(power);
+            }
+            let before = ranges.clone();
+            self.end_where_noise_dies(kept, corners, &mut ranges);
+            let ended = kept.iter().filter(|&&axis| ranges[axis] != before[axis]);
+            let ended: Vec<usize> = ended.copied().collect();
+            for &axis in &ended {
+                self.axes[axis].ends[1] = Some(ranges[axis].1);
+            }
+            !ended.is_empty()
+        })
     }
 
     /// Ends ranges from zero on at the first value above it that no path crosses upward anywhere along the sweep, and

@@ -135,7 +135,12 @@ impl Settings {
         let ends: Vec<Arc<dyn System>> = corners.map(system).collect();
         let mut kept = self.keep_to_one_side(&ends);
         self.end_where_noise_has_no_value(&kept, &ends);
-        let mut ranges = self.find_ranges(&ends, cancellation)?;
+        let mut ranges = match self.find_ranges(&ends, cancellation) {
+            Err(_) if self.end_where_paths_ran_away(&kept, &ends) => {
+                self.find_ranges(&ends, cancellation)?
+            }
+            found => found?,
+        };
         while self.reopen(&mut kept, &ends, &ranges) {
             ranges = self.find_ranges(&ends, cancellation)?;
         }

@@ -131,6 +131,12 @@ fn check_table<'n>(
         let is_table = matches!(entry.node.value, Value::Table(_));
         // A key may stand for a value or for a table: then the value decides.
         let opens = is_table && !below(path).is_empty();
+        if let Some(nameless) = nameless_passage(entry, path) {
+            found.push(nameless);
+            path.pop();
+            // One name helps all keys.
+            return;
+        }
         if let Some(key) = keys::find(path).filter(|_| !opens) {
             match value_of(key, path, &entry.node) {
                 Ok(plain) => (key.field.set)(draft, &key.name_in(path), &plain),
@@ -159,6 +165,31 @@ fn check_table<'n>(
         }
         path.pop();
     }
+}
+
+/// What is said of a noise that is given as a table.
+const NOISE_KINDS: &str = "an axis has its amplitude alone, as in `x = \"sqrt(2 D)\"`; what kind all noises are is said \
+                           once, by `kind = \"ornstein-uhlenbeck\"` in [system.noise] (docs/coloured-noise.md)";
+
+/// What is wrong with `[passage]` where keys of a passage stand right in it, before any name.
+fn nameless_passage(entry: &Entry, path: &[&str]) -> Option<Diagnostic> {
+    let keys = below(&["passage", "<passage>"]);
+    let is_key = |name: &str| keys.iter().any(|key| key.trim_matches('`') == name);
+    let holds_keys = entry.node.entries().iter().any(|one| is_key(&one.key));
+    if path.len() != 2 || path[0] != "passage" || !is_key(&entry.key) || holds_keys {
+        return None;
+    }
+    let title = format!(
+        "`{}` stands in [passage] itself, and not in a passage",
+        entry.key
+    );
+    let found = Diagnostic::new(title)
+        .at(&entry.key_place, "a passage has a name")
+        .allowed(format!("a table for each passage with the keys {}", keys.join(", ")))
+        .remedy(
+            "write [passage.out] in place of [passage]; `out` is any name, after which columns such as `out_mean` are called",
+        );
+    Some(found)
 }
 
 /// Names that may follow a path, each once, in backquotes.
@@ -285,6 +316,9 @@ fn value_of(key: &Key, path: &[&str], node: &SpannedValue) -> Result<Plain, Box<
     }
     Err(Box::new(
         match (kind, &blamed.value, suggestion(kind, blamed)) {
+            (Kind::Formulas, Value::Table(_) | Value::Array(_), _) => {
+                diagnostic.remedy(NOISE_KINDS)
+            }
             (_, _, Some(words)) => diagnostic.remedy(format!("did you mean `{words}`?")),
             (Kind::Printable, Value::Text(_), _) => diagnostic.remedy(
                 "a backslash between `\"` begins a code: write `\\\\`, or put the text between `'`",

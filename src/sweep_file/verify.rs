@@ -63,20 +63,30 @@ impl Settings {
         let axes = hazard.state.iter().enumerate();
         let axes = axes.map(|(axis, value)| (self.family.axis(axis), *value));
         let swept = self.family.parameter();
-        let parameters = self
-            .family
-            .model()
-            .parameters
-            .iter()
-            .zip(&hazard.parameters);
-        let swept = parameters.filter(|(parameter, _)| parameter.name == swept);
-        let swept = swept.map(|(parameter, value)| (parameter.name.as_str(), *value));
+        let all = self.family.model().parameters.iter();
+        let own = hazard.of_parameters.as_deref();
+        let parameters = all.zip(&hazard.parameters).enumerate();
+        let parameters = parameters.filter(|(number, (parameter, _))| match own {
+            Some(own) => own.contains(number),
+            None => parameter.name == swept,
+        });
+        let parameters = parameters.map(|(_, (one, value))| (one.name.as_str(), *value));
+        let parameters: Vec<(&str, f64)> = parameters.collect();
         let values: Vec<String> = axes
-            .chain(swept)
+            .filter(|_| own.is_none())
+            .chain(parameters.iter().copied())
             .map(|(name, value)| format!("{name} = {}", short(value)))
             .collect();
+        let (which, remedy) = match own {
+            None => (
+                format!(" {which}"),
+                "change the formula, or leave that state out by `from` and `to` in [cells]"
+                    .to_owned(),
+            ),
+            Some(_) => (String::new(), self.remedy_of_parameters(&parameters)),
+        };
         let title = format!(
-            "{} is not finite {which}: {} in {} at {}",
+            "{} is not finite{which}: {} in {} at {}",
             hazard.place,
             hazard.kind.words(),
             hazard.part,
@@ -84,9 +94,24 @@ impl Settings {
         );
         let diagnostic = Diagnostic::new(title)
             .allowed("formulas that are finite for every state of the domain and every value of the sweep")
-            .remedy("change the formula, or leave that state out by `from` and `to` in [cells]");
+            .remedy(remedy);
         let place = formula_place(&self.document, &self.draft().equations, &hazard.place);
         diagnostic.at(place.as_ref(), hazard.kind.words())
+    }
+
+    /// What helps where parameters alone make a formula fail: the keys that give them their values.
+    fn remedy_of_parameters(&self, parameters: &[(&str, f64)]) -> String {
+        let map = self.map.as_ref();
+        let key = |(name, _): &(&str, f64)| match map {
+            _ if *name == self.family.parameter() => "`sweep.from` and `sweep.to`".to_owned(),
+            Some(map) if *name == map.parameter => "`map.from` and `map.to`".to_owned(),
+            _ => format!("`system.parameters.{name}`"),
+        };
+        let keys: Vec<String> = parameters.iter().map(key).collect();
+        match keys.is_empty() {
+            true => "change the formula".to_owned(),
+            false => format!("change {}, or the formula", keys.join(", ")),
+        }
     }
 
     /// What built-in models promise, tried of the equations of a file at both ends of the sweep.

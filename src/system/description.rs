@@ -139,3 +139,9 @@ impl ParameterDescription {
         Self { range, ..self }
     }
 }
+
+/// A symbol without its markup: `f_{c}` becomes `f_c`, `σ^{2}` σ².
+pub(crate) fn in_letters(symbol: &str) -> String {
+    let raised = symbol.replace("^{2}", "²").replace("^{3}", "³");
+    raised.replace(['{', '}'], "")
+}

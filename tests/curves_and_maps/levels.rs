@@ -183,6 +183,7 @@ fn the_program_follows_levels_in_curves_and_maps() {
         assert!(off <= error, "off by {off}: {row:?}");
     }
     room.holds_all("run/curves/LV1-D", "figures/curve.svg figures/curve.png");
+    assert!(room.read("run/curves/LV1-D/figures/curve.svg").contains("mean time (out) = 3"));
     room.done("plot run/curves/LV1-D --quiet");
     room.done("explore run/curves/LV1-D --html page.html --quiet");
     room.done("verify run/curves/LV1-D");

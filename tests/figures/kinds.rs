@@ -326,7 +326,7 @@ of = ['x']
 to = 3.0
 ";
     let (sweep, result) = crate::common::sweeps::swept(text, "");
-    assert_eq!(sweep.settings.title, "Sweep of alpha");
+    assert_eq!(sweep.settings.title, "Sweep of α");
     let figures = Figures::of_sweep(&result, "", &[]);
     let diagram = figures.draw("diagram_x").unwrap().remove(0);
     let system = "System: x' = α x - x³ + √(2 D σ²) ξ₁(t); E[ξ_i(t) ξ_j(t+τ)] = δ_ij δ(τ), with D = 0.5, σ² = 1.";
@@ -423,4 +423,6 @@ fn measures_are_told_in_words_and_those_of_solvers_are_not_among_them() {
     );
     let caption = "error: standard deviation of x, decay rate 1. ";
     assert!(sheet.caption.contains(caption), "{}", sheet.caption);
+    let unknown = "Open circles stand where no error is known.";
+    assert!(sheet.caption.contains(unknown), "{}", sheet.caption);
 }

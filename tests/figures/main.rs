@@ -10,6 +10,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod captions;
 mod kinds;
 mod styles;
 mod texts;

@@ -32,3 +32,4 @@ mod relaxation;
 mod spectra;
 mod sweep;
 mod systems;
+mod told_early;

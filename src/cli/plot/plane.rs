@@ -51,6 +51,7 @@ pub(super) fn run(
     };
     let figures = figures
         .solved_by(settings.method.kind.name(), spec.problem.watched())
+        .carried_by(family, spec.problem.space().axes())
         .with_style(style);
     let words: Vec<&str> = arguments.only.iter().map(|word| word.trim()).collect();
     figures.check(&words)?;

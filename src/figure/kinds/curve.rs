@@ -69,6 +69,8 @@ pub(in crate::figure) fn sketches<'a>(
             levels: LevelLines {
                 plane,
                 curves: levels,
+                family,
+                observables: &watched,
             },
             row,
             crossed,

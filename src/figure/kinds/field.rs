@@ -17,7 +17,7 @@ use crate::figure::parts::joint_map::{with_letter, write_above};
 use crate::figure::parts::view::middles;
 use crate::figure::parts::{caption, names, table};
 use crate::figure::print::{Figure, Print};
-use crate::system::{Family, FieldKind, FieldQuestion};
+use crate::system::{Family, FieldKind, FieldQuestion, Region};
 
 /// Side of a map by itself and of one on a sheet, the narrowest one there, and the highest, in pixels.
 const SIDE: f64 = 290.0;
@@ -108,13 +108,18 @@ fn title(asked: &FieldQuestion) -> &'static str {
     }
 }
 
+/// The inequalities of a region, for captions.
+fn in_symbols(family: &Family, region: &Region) -> String {
+    caption::in_symbols(family.model(), region.text())
+}
+
 /// What a field is, for captions.
 fn words(family: &Family, asked: &FieldQuestion) -> String {
     let [until, part] = [
         Some(&asked.until),
         asked.part.and_then(|part| asked.exits.get(part)),
     ]
-    .map(|region| region.map_or("", |region| region.text()));
+    .map(|region| region.map_or_else(String::new, |region| in_symbols(family, region)));
     match asked.kind {
         FieldKind::MeanTime => {
             format!("Mean time until {until}, over the state where a process starts")
@@ -122,24 +127,28 @@ fn words(family: &Family, asked: &FieldQuestion) -> String {
         FieldKind::Committor => format!(
             "Committor: probability to enter {part} before any other part of {until}, over the state where a process starts"
         ),
-        FieldKind::ReactiveDensity => format!("Density of being on the way {}", way(asked)),
+        FieldKind::ReactiveDensity => format!("Density of being on the way {}", way(family, asked)),
         FieldKind::ReactiveCurrent => {
-            let axis = asked.axis.map_or("", |axis| family.axis(axis));
+            let axis = asked.axis.map_or("", |axis| family.axis_symbol(axis));
+            let axis = caption::in_letters(axis);
             match family.model().axes.len() {
                 1 => format!(
                     "Current along {axis} of processes on their way {}",
-                    way(asked)
+                    way(family, asked)
                 ),
-                _ => format!("Current of processes on their way {}", way(asked)),
+                _ => format!("Current of processes on their way {}", way(family, asked)),
             }
         }
     }
 }
 
 /// Between which regions transitions are.
-fn way(asked: &FieldQuestion) -> String {
+fn way(family: &Family, asked: &FieldQuestion) -> String {
     match &asked.exits[..] {
-        [from, to] => format!("from {} to {}", from.text(), to.text()),
+        [from, to] => {
+            let [from, to] = [from, to].map(|region| in_symbols(family, region));
+            format!("from {from} to {to}")
+        }
         _ => String::new(),
     }
 }
@@ -228,9 +237,19 @@ fn draw_maps(
         true => where_seen(fields.iter().map(|(_, fields)| &fields[..])),
         false => fields.iter().find_map(|(_, fields)| whole(fields)),
     }?;
-    let known = fields
-        .iter()
-        .filter_map(|(value, fields)| Some((*value, FieldMap::new(fields, extent)?)));
+    let target = |value: f64| {
+        let may_jump = !asked.kind.is_reactive() && asked.until.basin().is_none();
+        let values = may_jump.then(|| family.values_at(value).ok()).flatten()?;
+        asked.until.level().bind(&values).ok()
+    };
+    let known = fields.iter().filter_map(|(value, fields)| {
+        let map = FieldMap::new(fields, extent)?;
+        let map = match target(*value) {
+            Some(level) => map.around(move |(x, y)| level.at(&[x, y]) < 0.0),
+            None => map,
+        };
+        Some((*value, map))
+    });
     let known: Vec<(f64, FieldMap<'_>)> = known.collect();
     let share = print.share(known.len());
     let maps = &known[share.clone()];

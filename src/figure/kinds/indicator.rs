@@ -6,9 +6,10 @@ use crate::topology::{Indicator, IndicatorKind};
 use super::{Drawn, Kind};
 use crate::continuation::SweepResult;
 use crate::figure::canvas::style::Stroke;
-use crate::figure::parts::along::{self, Curve, Track};
+use crate::figure::parts::along;
 use crate::figure::parts::caption;
 use crate::figure::parts::table::{self, number as number_of};
+use crate::figure::parts::track::{Curve, Track};
 use crate::figure::print::Print;
 
 /// Height of a panel, in pixels.

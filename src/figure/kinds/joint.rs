@@ -84,7 +84,7 @@ impl<'a> Sweep<'a> {
 }
 
 /// A page that shows joint densities, in the way that the words say.
-fn figure((joint, look): (&Joint<'_>, &Look), way: &str, page: &Page) -> Figure {
+pub(super) fn figure((joint, look): (&Joint<'_>, &Look), way: &str, page: &Page) -> Figure {
     let (result, points) = (joint.result, &joint.points[joint.shown.clone()]);
     let way = way.replace(CONTOURS, caption::contours(look));
     let (family, watched) = (

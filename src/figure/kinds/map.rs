@@ -72,6 +72,8 @@ pub(in crate::figure) fn sketches<'a>(
                 levels: LevelLines {
                     plane: &map.plane,
                     curves: &map.levels,
+                    family,
+                    observables: &map.subject.observables,
                 },
                 family,
                 look: &print.look,
@@ -298,7 +300,8 @@ impl Scene<'_> {
             words.join(", "),
         );
         for curve in &self.curves {
-            let ends = curve.ends.iter().map(|end| end.reason.words(&curve.plane));
+            let ends = curve.ends.iter();
+            let ends = ends.map(|end| caption::end(self.family, &end.reason, &curve.plane));
             let mut ends: Vec<String> = ends.collect();
             ends.dedup();
             text += &format!(

@@ -6,6 +6,7 @@ use crate::continuation::{Point, SweepResult};
 use crate::density::{Density, EstimatedDensity, Observable};
 
 use super::{Drawn, Kind, Sketch};
+use crate::figure::canvas::contour::beside;
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::legend::{Legend, Swatch};
 use crate::figure::canvas::look::Look;
@@ -25,6 +26,8 @@ const BETWEEN: f64 = 18.0;
 /// Opacity of the band of two standard errors.
 const BAND: f64 = 0.18;
 
+/// Most panels beside each other on a page of its own width.
+const MOST_COLUMNS: usize = 4;
 /// Narrowest panel beside another where the page is given.
 const NARROWEST: f64 = 165.0;
 /// Room right of the last panel, for half a label of its axis.
@@ -59,7 +62,7 @@ fn arrangement(look: &Look, panels: usize, room: f64) -> (usize, f64) {
         _ => 215.0,
     };
     if look.page.is_none() {
-        return (panels, own);
+        return (Look::even_columns(panels, MOST_COLUMNS), own);
     }
     let width = |columns: usize| {
         let gaps = BETWEEN * (columns - 1) as f64 + BESIDE + 2.0 * MARGIN;
@@ -234,7 +237,8 @@ fn draw_panel(page: &Page, (one, across): (&Overlaid<'_>, &Scale), rect: Rectang
     let panel = page.panel(rect, across.range, one.up.range);
     for (number, estimated) in &one.densities {
         let stroke = Stroke::curve(*number);
-        let band = band(estimated, across.range, one.up.range);
+        let band = band(estimated, across.range);
+        let band = within(band, one.up.range);
         if !band.is_empty() {
             let fill = stroke.colour.at(BAND);
             panel.draw(&band, Shape::Area(fill));
@@ -262,22 +266,71 @@ pub(super) fn within(curve: Vec<(f64, f64)>, range: (f64, f64)) -> Vec<(f64, f64
     curve.into_iter().map(kept).collect()
 }
 
-/// The outline of ± 2 standard errors; empty for a method without sampling.
-fn band(estimated: &EstimatedDensity, window: (f64, f64), range: (f64, f64)) -> Vec<(f64, f64)> {
+/// The outline of ± 2 standard errors about the curve that is drawn; empty where none are stated. Between the middles
+/// of cells errors are joined by straight lines.
+fn band(estimated: &EstimatedDensity, window: (f64, f64)) -> Vec<(f64, f64)> {
     let errors = &estimated.stated_errors();
     let values = &estimated.density.values;
     if errors.len() != values.len() || !errors.iter().any(|&error| error > 0.0) {
         return Vec::new();
     }
-    let at = |factor: f64| {
-        let edge = move |(cell, centre): (usize, f64)| {
-            let value = values[cell] + factor * errors[cell];
-            (centre, value.clamp(range.0, range.1))
-        };
-        cells(&estimated.density, window).map(edge)
+    let centres = estimated.density.axes[0].centres();
+    let error = |place: f64| match beside(&centres, place) {
+        Some((cell, share)) => (1.0 - share) * errors[cell] + share * errors[cell + 1],
+        None => errors[0],
     };
-    let mut outline: Vec<(f64, f64)> = at(2.0).collect();
-    let lower: Vec<(f64, f64)> = at(-2.0).collect();
-    outline.extend(lower.into_iter().rev());
-    outline
+    let curve = View::new(estimated).curve(window);
+    let edge = |factor: f64| {
+        let curve = curve.iter();
+        curve.map(move |&(place, value)| (place, value + factor * error(place)))
+    };
+    edge(2.0).chain(edge(-2.0).rev()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::density::{Structure, Variants};
+    use crate::figure::style::FigureStyle;
+    use crate::space::Axis;
+
+    #[test]
+    fn many_panels_stand_in_rows() {
+        let look = FigureStyle::default().look();
+        assert_eq!(arrangement(&look, 3, 30.0).0, 3);
+        assert_eq!(arrangement(&look, 10, 30.0).0, 4);
+    }
+
+    #[test]
+    fn a_band_lies_about_the_curve_that_is_drawn() {
+        // On wide cells the curve rises far above the chords between their middles.
+        let axis = Axis::uniform(-4.0, 4.0, 16).unwrap();
+        let normal = |x: f64| (-0.5 * x * x).exp() / 2.507;
+        let values: Vec<f64> = axis.centres().into_iter().map(normal).collect();
+        let estimated = EstimatedDensity {
+            observable: Observable::Marginal(0),
+            standard_error: vec![0.01; 16],
+            variants: Variants::Scheme(values.clone()),
+            density: Density {
+                axes: vec![axis],
+                values,
+            },
+            structure: Structure::default(),
+            negligible: 0.0,
+            truncation: Default::default(),
+        };
+        let window = (-4.0, 4.0);
+        let curve = View::new(&estimated).curve(window);
+        let outline = band(&estimated, window);
+        assert_eq!(outline.len(), 2 * curve.len());
+        let pairs = curve.iter().zip(outline.iter().zip(outline.iter().rev()));
+        for (place, (upper, lower)) in pairs {
+            assert_eq!((place.0, place.0), (upper.0, lower.0));
+            assert!(
+                (0.5 * (upper.1 + lower.1) - place.1).abs() < 1e-12,
+                "{place:?}"
+            );
+            assert!((upper.1 - lower.1 - 0.04).abs() < 1e-12, "{place:?}");
+        }
+    }
 }

@@ -3,19 +3,16 @@
 
 use super::{Drawn, Kind, Sketch};
 use crate::continuation::measure::{
-    AMPLIFICATION, AMPLITUDE, DECAY_DISCRIMINANT, DEVIATION, DIVERGENCE, EDGE_MASS, ESCAPE_RATE,
-    EXPONENT, FACTORISATIONS, MAP_STEP, NEGATIVE_MASS, NUMERICAL_DIFFUSION, PASSAGE_DEVIATION,
-    PASSAGE_KRAMERS, PASSAGE_MEAN, PASSAGE_MELNIKOV, PASSAGE_QUANTILE, PASSAGE_SHARE,
-    PASSAGE_SURVIVAL, SPECTRAL_PEAK, TIME_STEP_BIAS, TURN_DIFFUSION, VELOCITY,
+    EDGE_MASS, ESCAPE_RATE, FACTORISATIONS, MAP_STEP, NEGATIVE_MASS, NUMERICAL_DIFFUSION,
 };
 use crate::continuation::{Label, LevelCrossing, Measure, MeasureKind, SweepResult};
 use crate::figure::canvas::style::{FRAME_LINE, GREY, Stroke};
-use crate::figure::canvas::symbols;
-use crate::figure::parts::along::{self, Curve, Track};
+use crate::figure::parts::along;
+use crate::figure::parts::caption;
+use crate::figure::parts::measure_names::Named;
 use crate::figure::parts::table::{self, number};
-use crate::figure::parts::{caption, names};
+use crate::figure::parts::track::{Curve, Track};
 use crate::figure::print::Print;
-use crate::system::Family;
 
 /// Height of a panel among others, and of one by itself, in pixels.
 const AMONG: f64 = 92.0;
@@ -53,7 +50,7 @@ pub(super) const KIND: Kind = Kind {
 struct MeasureSeries {
     name: String,
     unit: String,
-    /// Parameter, value and error, which is zero where none is known.
+    /// Parameter, value and error, which is not a number where none is known.
     values: Vec<(f64, f64, f64)>,
     /// A range is no shorter: what differs by less is rounding.
     least: f64,
@@ -62,7 +59,11 @@ struct MeasureSeries {
 impl MeasureSeries {
     /// Whether it is known to be positive, and changes by more than a linear axis shows.
     fn is_over_decades(&self) -> bool {
-        let is_positive = self.values.iter().all(|(_, value, error)| value > error);
+        // Where no error is known the value itself is to be positive.
+        let is_positive = self
+            .values
+            .iter()
+            .all(|(_, value, error)| *value > error.max(0.0));
         let values = self.values.iter().map(|(_, value, _)| *value);
         let least = values.fold(f64::INFINITY, f64::min);
         is_positive && self.largest() > DECADES * least
@@ -96,7 +97,7 @@ fn measures(result: &SweepResult) -> Vec<MeasureSeries> {
     for point in &result.points {
         let shown = point.report.measures.iter();
         for one in shown.filter(|one| one.value.is_finite() && !is_of_solver(one)) {
-            let value = (point.value, one.value, one.error.unwrap_or(0.0));
+            let value = (point.value, one.value, one.error.unwrap_or(f64::NAN));
             match found.iter_mut().find(|known| known.name == one.name) {
                 Some(known) => known.values.push(value),
                 None => found.push(MeasureSeries {
@@ -150,109 +151,9 @@ fn levels(result: &SweepResult, measure: &MeasureSeries) -> Vec<Curve> {
     lines.chain(drops).collect()
 }
 
-/// Words of measures that the field calls otherwise than tables do.
-const TITLES: [(MeasureKind, &str); 17] = [
-    (PASSAGE_MEAN, "mean time"),
-    (PASSAGE_DEVIATION, "standard deviation"),
-    (PASSAGE_KRAMERS, "Kramers' rate"),
-    (PASSAGE_MELNIKOV, "Mel'nikov's rate"),
-    (PASSAGE_SURVIVAL, "probability to last longer than"),
-    (PASSAGE_QUANTILE, "time quantile"),
-    (PASSAGE_SHARE, "share that ends in"),
-    (DEVIATION, "standard deviation"),
-    (EXPONENT, "largest Lyapunov exponent"),
-    (DIVERGENCE, "sum of the Lyapunov exponents"),
-    (VELOCITY, "mean velocity"),
-    (TURN_DIFFUSION, "effective diffusion"),
-    (AMPLITUDE, "amplitude of the mean"),
-    (AMPLIFICATION, "spectral amplification"),
-    (DECAY_DISCRIMINANT, "discriminant of the slowest modes"),
-    (SPECTRAL_PEAK, "frequency of the spectral peak"),
-    (TIME_STEP_BIAS, "bias by the time step"),
-];
-
-/// What measures are of besides passages: names with their symbols as markup, the longest name first.
-struct Named<'a> {
-    family: &'a Family,
-    symbols: Vec<(String, String)>,
-}
-
-impl<'a> Named<'a> {
-    fn new(result: &'a SweepResult) -> Self {
-        let family = &result.subject.family;
-        let axes = 0..family.model().axes.len() + family.quantities().len();
-        let axes = axes.map(|axis| (family.axis(axis).to_owned(), names::axis(family, axis)));
-        let averaged = family.questions.averaged.iter();
-        let averaged = averaged.map(|one| (one.name().to_owned(), symbols::variable(one.symbol())));
-        let joint = result
-            .subject
-            .observables
-            .iter()
-            .filter(|one| one.axes().len() > 1);
-        let joint = joint.map(|&one| (one.name(family), names::density(family, one)));
-        let mut symbols: Vec<(String, String)> = axes.chain(averaged).chain(joint).collect();
-        symbols.sort_by_key(|(name, _)| std::cmp::Reverse(name.len()));
-        Self { family, symbols }
-    }
-
-    /// The name of a measure in words, as markup: `sd_y` becomes standard deviation of ẋ, `exit_mean` mean time (exit).
-    fn title(&self, name: &str) -> String {
-        let plain = |word: &str| symbols::plain(&word.replace('_', " "));
-        let titles = |follows: bool| {
-            TITLES
-                .iter()
-                .filter(move |(kind, _)| kind.follows == follows)
-        };
-        let mut passages = self.family.questions.passages.iter();
-        let passage = passages.find_map(|one| {
-            let word = name.strip_prefix(&one.name)?.strip_prefix('_')?;
-            Some((plain(&one.name), word))
-        });
-        if let Some((passage, word)) = passage {
-            let titled = titles(true).find_map(|(kind, title)| {
-                let before = word.strip_suffix(kind.word)?;
-                let before = plain(before.strip_suffix('_').unwrap_or(before));
-                Some(format!("{title} {before}").trim_end().to_owned())
-            });
-            return format!("{} ({passage})", titled.unwrap_or_else(|| plain(word)));
-        }
-        let of = self.symbols.iter().find_map(|(of, symbol)| {
-            let word = name.strip_suffix(of.as_str())?.strip_suffix('_')?;
-            Some((word, format!(" of {symbol}")))
-        });
-        let (word, of) = of.unwrap_or((name, String::new()));
-        let title = titles(false).find(|(kind, _)| kind.word == word);
-        title.map_or_else(|| plain(word), |(_, title)| (*title).to_owned()) + &of
-    }
-
-    /// A unit behind a title, in the symbols of the figure; nothing where it is that of the axis that the title names.
-    fn unit(&self, text: &str) -> String {
-        let symbol = |word: &str| self.symbols.iter().find(|(name, _)| name == word);
-        if text == "1" || symbol(text).is_some() {
-            return String::new();
-        }
-        let (mut made, mut rest) = (String::new(), text);
-        while !rest.is_empty() {
-            let begin = rest.find(char::is_alphabetic).unwrap_or(rest.len());
-            let (signs, after) = rest.split_at(begin);
-            let is_of_word = |c: char| c.is_alphanumeric() || c == '_';
-            let end = after.find(|c| !is_of_word(c)).unwrap_or(after.len());
-            let word = &after[..end];
-            made += &symbols::unit(signs);
-            made += &match symbol(word) {
-                Some((_, symbol)) => symbol.clone(),
-                None if word == "t" => symbols::variable(word),
-                None => symbols::plain(word),
-            };
-            rest = &after[end..];
-        }
-        format!(" [{made}]")
-    }
-}
-
 /// A panel each; `None` without a measure.
 fn draw(result: &SweepResult, all: &[MeasureSeries], (height, print): (f64, &Print<'_>)) -> Drawn {
-    let named = Named::new(result);
+    let named = Named::new(&result.subject.family, &result.subject.observables);
     let track = |one: &MeasureSeries| {
         let values = one.values.iter();
         let errors: Vec<f64> = values.clone().map(|(_, _, error)| *error).collect();

@@ -25,7 +25,7 @@ mod surface;
 mod survival;
 mod time_to_accuracy;
 
-use super::parts::{names, pages, view};
+use super::parts::{caption, names, pages, view};
 use super::print::{Figure, Print};
 use crate::compare::Comparison;
 use crate::continuation::{Point, SweepResult};
@@ -175,6 +175,7 @@ impl<'a> Sketch<'a> {
         let count = drawn.len();
         for (number, figure) in drawn.iter_mut().enumerate() {
             figure.name.clone_from(&self.name);
+            figure.caption = caption::with_sentence(&figure.caption, &print.modes);
             if count > 1 {
                 figure.name += &format!("_page{}", number + 1);
                 let caption = figure.caption.trim_end();

@@ -1,14 +1,16 @@
 //! The peak diagram of a marginal: where its peaks and valleys lie, and how high they are, over the parameter.
 
 use crate::continuation::{Point, SweepResult};
+use crate::density::EstimatedDensity;
 use crate::topology::{Feature, FeatureKind, Verdict};
 
 use super::{Drawn, Kind};
 use crate::figure::canvas::style::Stroke;
-use crate::figure::parts::along::{self, Curve, Track};
+use crate::figure::parts::along;
 use crate::figure::parts::branches::{Branch, branches};
 use crate::figure::parts::meeting::{located, meet};
 use crate::figure::parts::table::{self, number as number_of};
+use crate::figure::parts::track::{Curve, Track};
 use crate::figure::parts::view::{self, View};
 use crate::figure::parts::{caption, names};
 use crate::figure::print::Print;
@@ -21,6 +23,11 @@ const LOGARITHMIC: f64 = 30.0;
 /// The range of places as a share of where the density is, at least: a peak that stays where it is moves by rounding
 /// alone.
 const LEAST: f64 = 0.02;
+
+/// Exponents of densities nearer to zero are rounding.
+const FLAT: f64 = 1e-6;
+/// A place so near to an end of the range is there, as a share of a cell.
+const AT_END: f64 = 1e-6;
 
 /// A peak diagram an observed marginal.
 pub(super) const KIND: Kind = Kind {
@@ -88,9 +95,17 @@ fn draw(result: &SweepResult, (number, axis): (usize, usize), print: &Print<'_>)
         ),
     ];
     let seen = format!(
-        "Places and heights of the peaks (solid) and valleys (dashed) of the steady-state marginal density {} over {}.",
+        "Places and heights of the peaks (solid) and valleys (dashed) of the steady-state marginal density {} over {}.{}",
         caption::density(family, watched),
-        caption::parameter(family)
+        caption::parameter(family),
+        match result
+            .points
+            .iter()
+            .any(|point| has_unbounded(point, number))
+        {
+            true => " A peak at an end where the density has no bound has no height.",
+            false => "",
+        }
     );
     let texts = (seen, rows(result, number));
     along::draw((result, print), Some(watched), (&tracks, HEIGHT), texts)
@@ -107,27 +122,67 @@ fn rows(result: &SweepResult, number: usize) -> String {
         "persistence",
         "significance",
     ];
-    let features = along::detections(result, number).flat_map(|(value, detection)| {
-        let features = detection.features.iter();
-        features.map(move |feature| (value, feature))
+    let features = result.points.iter().flat_map(|point| {
+        let features = point.detections.get(number).into_iter();
+        let features = features.flat_map(|detection| &detection.features);
+        features.map(move |feature| (point, feature))
     });
     let rows = features.filter(|(_, feature)| feature.verdict == Verdict::Present);
-    let row = |(value, feature): (f64, &Feature)| {
+    let row = |(point, feature): (&Point, &Feature)| {
         let position = feature.position.first().copied();
+        let is_bounded = position.is_none_or(|place| !is_unbounded(point, number, place));
+        let height = |one: f64| {
+            if is_bounded {
+                number_of(one)
+            } else {
+                String::new()
+            }
+        };
         vec![
-            number_of(value),
+            number_of(point.value),
             format!("{:?}", feature.kind).to_lowercase(),
             position.map(number_of).unwrap_or_default(),
-            number_of(feature.density),
-            number_of(feature.persistence),
+            height(feature.density),
+            height(feature.persistence),
             number_of(feature.significance),
         ]
     };
     table::table(&columns, rows.map(row))
 }
 
-/// The densities at the places of a branch: as they were found where it was solved, else between those beside it.
+/// Whether one of the peaks of a point has no height.
+fn has_unbounded(point: &Point, number: usize) -> bool {
+    let features = point.detections.get(number).into_iter();
+    let mut present = features
+        .flat_map(|detection| &detection.features)
+        .filter(|one| one.verdict == Verdict::Present);
+    present.any(|one| {
+        let place = one.position.first();
+        place.is_some_and(|&place| is_unbounded(point, number, place))
+    })
+}
+
+/// Whether a density grows beyond any bound towards a place, an end of its range at which the noise dies.
+fn is_unbounded(point: &Point, number: usize, place: f64) -> bool {
+    let grows = |estimated: &EstimatedDensity| {
+        let (profile, axis) = (
+            estimated.structure.profile.as_ref()?,
+            &estimated.density.axes[0],
+        );
+        let ends = [axis.from(), axis.to()].into_iter().zip(profile.ends);
+        let mut own = ends.filter(|(end, _)| (place - end).abs() <= AT_END * axis.width(0));
+        let exponent = own.next()?.1?;
+        Some(exponent < -FLAT)
+    };
+    view::density(point, number)
+        .and_then(grows)
+        .unwrap_or(false)
+}
+
+/// The densities at the places of a branch, where they are bounded: as they were found where it was solved, else
+/// between those beside it.
 fn heights_of(result: &SweepResult, number: usize, branch: &Branch) -> Vec<(f64, f64)> {
+    let points = &result.points;
     let found = |value: f64, position: f64| {
         let mut points = along::detections(result, number);
         let (_, detection) = points.find(|(at, _)| *at == value)?;
@@ -136,7 +191,18 @@ fn heights_of(result: &SweepResult, number: usize, branch: &Branch) -> Vec<(f64,
         let feature = own.find(|one| one.position.first() == Some(&position))?;
         Some(feature.density)
     };
+    let grows = |value: f64, position: f64| {
+        let after = points.partition_point(|point| point.value < value);
+        let beside = [after.checked_sub(1), Some(after)];
+        let solved = points.get(after).is_some_and(|point| point.value == value);
+        let beside = &beside[usize::from(solved)..];
+        let mut beside = beside.iter().filter_map(|index| points.get((*index)?));
+        beside.any(|point| is_unbounded(point, number, position))
+    };
     let height = |&(value, position): &(f64, f64)| {
+        if grows(value, position) {
+            return None;
+        }
         let height =
             found(value, position).or_else(|| between(&result.points, number, (value, position)));
         Some((value, height?))

@@ -7,13 +7,13 @@ use crate::density::{Density, EstimatedDensity, Kink, Structure, Variants};
 use crate::space::Axis;
 use crate::topology::Between;
 
-use super::joint::DrawJoint;
+use super::joint::figure;
 use super::marginals::{Overlaid, draw_overlaid, values_of};
-use super::{Kind, Sketch, Sweep};
+use super::{Drawn, Kind, Sketch, Sweep};
 use crate::figure::canvas::page::Page;
 use crate::figure::canvas::symbols;
 use crate::figure::parts::joint_map::Joint;
-use crate::figure::parts::view;
+use crate::figure::parts::{caption, view};
 use crate::figure::print::Print;
 
 pub(super) const KIND: Kind = Kind {
@@ -25,30 +25,69 @@ pub(super) const KIND: Kind = Kind {
 /// Two figures an observed pair of axes: the density on a line, and the same with an integral of one, which is the
 /// density of one axis where the other has a value.
 fn sketches<'a>(sweep: &Sweep<'a>) -> Vec<Sketch<'a>> {
-    const WAY: &str = "on the lines through its centre of symmetry or first summit";
-    const CONDITIONAL: &str =
-        "on the lines through its centre of symmetry or first summit, each with an integral of one";
-    let plain: DrawJoint = |joint, print| draw(joint, false, print);
-    let conditional: DrawJoint = |joint, print| draw(joint, true, print);
-    let kinds = [
-        ("section", WAY, plain),
-        ("conditional", CONDITIONAL, conditional),
-    ];
     let pairs = sweep.pairs().flat_map(|(number, pair)| {
-        kinds.map(|(name, way, draw)| {
-            sweep.joint(format!("{name}_{pair}"), (number, way), &sweep.chosen, draw)
+        let kinds = [("section", false), ("conditional", true)];
+        kinds.map(|(name, is_conditional)| {
+            let (result, points) = (sweep.result, sweep.chosen.clone());
+            Sketch::new(format!("{name}_{pair}"), move |print| {
+                draw(&Joint::new(result, number, &points)?, is_conditional, print)
+            })
         })
     });
     pairs.collect()
 }
 
 /// The figure; `None` without a density.
-fn draw(joint: &Joint<'_>, is_conditional: bool, print: &Print<'_>) -> Option<Page> {
+fn draw(joint: &Joint<'_>, is_conditional: bool, print: &Print<'_>) -> Drawn {
     let points = joint.points.iter().enumerate();
     let found: Vec<(usize, &EstimatedDensity)> = points
         .filter_map(|(place, point)| Some((place, view::density(point, joint.number)?)))
         .collect();
     let centre = found.first().and_then(|(_, estimated)| centre(estimated))?;
+    let page = draw_lines(joint, (&found, centre), is_conditional, print)?;
+    let mut way = lines_in_words(joint, &found, centre);
+    if is_conditional {
+        way += ", each with an integral of one";
+    }
+    Some(figure((joint, &print.look), &way, &page))
+}
+
+/// Which lines the sections of all values lie on, for captions.
+fn lines_in_words(
+    joint: &Joint<'_>,
+    found: &[(usize, &EstimatedDensity)],
+    [x, y]: [f64; 2],
+) -> String {
+    let [first, second, _] = joint.titles.each_ref().map(|one| caption::in_letters(one));
+    let [x, y] = [x, y].map(caption::number);
+    let is_symmetric = |(_, estimated): &(usize, &EstimatedDensity)| {
+        estimated.structure.centre == found[0].1.structure.centre
+    };
+    let (place, estimated) = found[0];
+    let centre = match estimated.structure.centre {
+        Some(_) => "centre of symmetry",
+        None => "summit",
+    };
+    let through = match (&estimated.structure.centre, found) {
+        (_, [_]) => format!("its {centre}"),
+        (Some(_), _) if found.iter().all(is_symmetric) => format!("its {centre}"),
+        _ => {
+            let value = std::iter::once(joint.points[place].value);
+            format!(
+                "the {centre}{}",
+                caption::at(&joint.result.subject.family, value)
+            )
+        }
+    };
+    format!("on the lines {second} = {y} and {first} = {x} through {through}")
+}
+
+fn draw_lines(
+    joint: &Joint<'_>,
+    (found, centre): (&[(usize, &EstimatedDensity)], [f64; 2]),
+    is_conditional: bool,
+    print: &Print<'_>,
+) -> Option<Page> {
     let [first, second, _] = &joint.titles;
     let mut panels = Vec::new();
     for (along, own, other) in [(0, first, second), (1, second, first)] {

@@ -79,7 +79,7 @@ fn draw(result: &SweepResult, asked: &SpectrumOf, print: &Print<'_>) -> Drawn {
     let across = Scale::horizontal(look, range, wide, &names::parameter(family));
     let width = left + wide + bar.width() + MARGIN;
     let heading = Heading::new(look, print.title, width);
-    let labels = Labels::of_spectra(look, result, range, (left, wide));
+    let labels = Labels::of_spectrum(look, result, &asked.of, (range, (left, wide)));
     let above = labels.height().max(ColourBar::above());
     let map = Rectangle::new((left, heading.height() + above), (wide, high));
     let peaks = peaks(result, asked, is_logarithmic, (from, to));
@@ -122,7 +122,7 @@ fn draw(result: &SweepResult, asked: &SpectrumOf, print: &Print<'_>) -> Drawn {
     legend.draw(&page, map.left + 0.5 * map.width, below);
     let seen = format!(
         "Power spectrum of {} (colours, logarithmic over {DECADES} decades) over {}, with the frequency of its highest maximum above zero.",
-        asked.of,
+        caption::in_letters(&asked.title),
         caption::parameter(family)
     );
     let marked = [spectral_rows(result, asked)];

@@ -7,7 +7,7 @@ use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::legend::{Legend, Swatch};
 use crate::figure::canvas::page::{Heading, Page, Rectangle};
 use crate::figure::canvas::style::{MARGIN, Stroke};
-use crate::figure::parts::along::{Curve, Track, draw_track};
+use crate::figure::parts::track::{self, Curve, Track, draw_track};
 use crate::figure::parts::{caption, names, table};
 use crate::figure::print::{Figure, Print};
 use crate::system::{Family, SpectrumQuestion};
@@ -142,7 +142,7 @@ fn draw_spectrum(
         } else {
             "Power"
         },
-        asked.of,
+        caption::in_letters(&asked.title),
         caption::at(&result.subject.family, lines.iter().map(|line| line.value)),
         match question.sides.factor() {
             1.0 => "over frequencies of either sign",
@@ -182,7 +182,7 @@ fn draw_correlation(
         .collect();
     let seen = format!(
         "Covariance of {} over the lag in the steady state{}, each with the band of its error.",
-        asked.of,
+        caption::in_letters(&asked.title),
         caption::at(&result.subject.family, lines.iter().map(|line| line.value)),
     );
     let chart = Chart {
@@ -235,6 +235,7 @@ impl Chart {
             share: 1.0,
             curves: curves.collect(),
         };
+        let unknown = track::without_errors(std::slice::from_ref(&track)).to_owned();
         let places = || {
             lines
                 .iter()
@@ -293,7 +294,7 @@ impl Chart {
         let table = table::table(&columns, rows);
         Some(Figure::new(
             &page,
-            caption::of_sweep(result, self.seen, &[]),
+            caption::of_sweep(result, self.seen, &[unknown]),
             table,
         ))
     }

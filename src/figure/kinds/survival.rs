@@ -67,7 +67,7 @@ fn survival(point: &Point, passage: &PassageQuestion) -> Vec<(f64, (f64, f64))> 
     let at = |time: &f64| {
         let name = PASSAGE_SURVIVAL.name(&format!("{}_{time}", passage.name));
         let known = point.report.measures.iter().find(|one| one.name == name)?;
-        let known = (known.value, known.error.unwrap_or(0.0));
+        let known = (known.value, known.error.unwrap_or(f64::NAN));
         Some((time.log10(), known))
     };
     passage.times.iter().filter_map(at).collect()

@@ -10,11 +10,12 @@ use crate::topology::Detection;
 use super::bifurcations::Labels;
 use super::caption;
 use super::names;
+use super::track::{self, Track, draw_track};
 use crate::figure::canvas::frame::{self, Scale};
-use crate::figure::canvas::legend::{self, Legend, Swatch};
+use crate::figure::canvas::legend::{Legend, Swatch};
 use crate::figure::canvas::letters;
-use crate::figure::canvas::page::{Heading, Lettering, Page, Panel, Rectangle, Shape, lettering};
-use crate::figure::canvas::style::{GREY, MARGIN, Stroke, TEXT};
+use crate::figure::canvas::page::{Heading, Lettering, Page, Rectangle, lettering};
+use crate::figure::canvas::style::{MARGIN, TEXT};
 use crate::figure::print::{Figure, Print};
 
 /// Width of the panels on a page of its own width, in pixels, and that width.
@@ -30,108 +31,6 @@ const BETWEEN: f64 = 16.0;
 const BETWEEN_LABELS: f64 = 4.0;
 /// Room right of the panels, for half a label.
 const BESIDE: f64 = 14.0;
-/// Share of a linear range that is left free above and below the data.
-const BORDER: f64 = 0.06;
-/// Opacity of bands of errors.
-const BAND: f64 = 0.2;
-/// What is smaller than this is drawn there on logarithmic axes: rounding, not a number.
-const SMALLEST: f64 = 1e-300;
-
-/// One curve of a panel.
-pub(crate) struct Curve {
-    /// What the legend says; empty for a curve that has its entry already.
-    pub(crate) name: String,
-    pub(crate) stroke: Stroke,
-    /// Parameter and value, ascending in the parameter; neighbours are joined.
-    pub(crate) places: Vec<(f64, f64)>,
-    /// Half-width of the band about each place; empty without errors.
-    pub(crate) errors: Vec<f64>,
-}
-
-/// One panel.
-pub(crate) struct Track {
-    /// Title of the ordinate, as markup.
-    pub(crate) title: String,
-    pub(crate) is_logarithmic: bool,
-    /// Whether the line of zero belongs to it.
-    pub(crate) has_zero: bool,
-    /// A linear range is no shorter: what differs by less is the same.
-    pub(crate) least: f64,
-    /// Height, as a share of the usual one.
-    pub(crate) share: f64,
-    pub(crate) curves: Vec<Curve>,
-}
-
-impl Track {
-    /// A value as it is drawn.
-    fn place_of(&self, value: f64) -> f64 {
-        if self.is_logarithmic {
-            value.abs().max(SMALLEST).log10()
-        } else {
-            value
-        }
-    }
-
-    /// An end of the band about a value, above or below, as it is drawn: by decades a band that reaches beyond zero
-    /// reaches down without end.
-    fn end_of_band(&self, value: f64, error: f64) -> f64 {
-        if self.is_logarithmic {
-            self.place_of((value.abs() + error).max(0.0))
-        } else {
-            value + error
-        }
-    }
-
-    /// A range of values with the ends of their bands, which reach beyond it by no more than thrice the middle one of
-    /// their half-widths, or as far as the values do.
-    fn with_bands(&self, (low, high): (f64, f64)) -> (f64, f64) {
-        let pairs = self
-            .curves
-            .iter()
-            .flat_map(|curve| curve.places.iter().zip(&curve.errors));
-        let band = |(place, error): (&(f64, f64), &f64)| {
-            [-1.0, 1.0].map(|side| self.end_of_band(place.1, side * error))
-        };
-        let bands: Vec<[f64; 2]> = pairs.map(band).filter(|band| band[1].is_finite()).collect();
-        let mut widths: Vec<f64> = bands.iter().map(|[low, high]| 0.5 * (high - low)).collect();
-        widths.sort_by(f64::total_cmp);
-        let middle = widths.get(widths.len() / 2).copied().unwrap_or(0.0);
-        let most = (3.0 * middle).max(high - low);
-        bands.iter().fold((low, high), |(least, largest), band| {
-            let least = least.min(band[0].max(low - most));
-            (least, largest.max(band[1].min(high + most)))
-        })
-    }
-
-    /// The range of the ordinate, with the bands of errors but for single ones that are far wider than others; `None`
-    /// without a number.
-    pub(crate) fn range(&self) -> Option<(f64, f64)> {
-        let values = self.curves.iter().flat_map(|curve| &curve.places);
-        let values = values
-            .map(|place| self.place_of(place.1))
-            .filter(|value| value.is_finite());
-        let zero = self.has_zero.then_some(0.0);
-        let join = |range: Option<(f64, f64)>, value: f64| {
-            let (low, high) = range.unwrap_or((value, value));
-            Some((low.min(value), high.max(value)))
-        };
-        let (low, high) = values.chain(zero).fold(None, join)?;
-        let (low, high) = self.with_bands((low, high));
-        // Two decades hold two labels; a constant is drawn in the middle.
-        let least = if self.is_logarithmic {
-            2.0
-        } else {
-            let size = low.abs().max(high.abs());
-            let is_constant = high - low <= 1e-9 * size;
-            // Labels of a constant have few digits.
-            let share = if is_constant { 0.2 } else { 1e-9 };
-            (share * size).max(1e-12).max(self.least)
-        };
-        let missing = (0.5 * (least - (high - low))).max(0.0);
-        let border = BORDER * (high - low + 2.0 * missing);
-        Some((low - missing - border, high + missing + border))
-    }
-}
 
 /// What was detected of an observable, by its number, at the values of a sweep.
 pub(crate) fn detections(
@@ -255,7 +154,8 @@ pub(crate) fn draw(
     }
     let middle = 0.5 * (left(0) + left(columns - 1) + wide);
     legend.draw(&page, middle, below);
-    let marked = [caption::bifurcations(result)];
+    let unknown = track::without_errors(tracks).to_owned();
+    let marked = [unknown, caption::bifurcations(result)];
     let caption = caption::of_sweep(result, seen, &marked);
     Some(Figure::new(&page, caption, table).of_panels(count))
 }
@@ -284,38 +184,6 @@ fn write_title(
     page.text(place, upward);
 }
 
-/// Draws the curves of a track with their bands.
-pub(crate) fn draw_track(panel: &Panel, track: &Track, range: (f64, f64), (low, high): (f64, f64)) {
-    if track.has_zero {
-        let zero = Stroke::solid(GREY, 0.8);
-        panel.draw(&[(range.0, 0.0), (range.1, 0.0)], Shape::Line(zero));
-    }
-    for curve in &track.curves {
-        let on_axis = |value: f64| track.place_of(value).clamp(low, high);
-        let band = |sign: f64| {
-            let pairs = curve.places.iter().zip(&curve.errors);
-            let end = move |place: f64, error: f64| {
-                track.end_of_band(place, sign * error).clamp(low, high)
-            };
-            pairs.map(move |(place, error)| (place.0, end(place.1, *error)))
-        };
-        let mut outline: Vec<(f64, f64)> = band(1.0).collect();
-        outline.extend(band(-1.0).collect::<Vec<_>>().into_iter().rev());
-        if curve.errors.iter().any(|&error| error > 0.0) {
-            panel.draw(&outline, Shape::Area(curve.stroke.colour.at(BAND)));
-        }
-        let places: Vec<(f64, f64)> = curve
-            .places
-            .iter()
-            .map(|place| (place.0, on_axis(place.1)))
-            .collect();
-        match places[..] {
-            [_] => panel.mark(&places, legend::symbol(0, curve.stroke.colour)),
-            _ => panel.draw(&places, Shape::Line(curve.stroke)),
-        }
-    }
-}
-
 /// First and last parameter value; widened if they are the same.
 pub(crate) fn parameter_range(points: &[Point]) -> (f64, f64) {
     let values = points.iter().map(|point| point.value);
@@ -327,58 +195,4 @@ pub(crate) fn parameter_range(points: &[Point]) -> (f64, f64) {
     }
     let half = if from == 0.0 { 0.5 } else { 0.1 * from.abs() };
     (from - half, from + half)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_band_by_decades_that_reaches_beyond_zero_has_no_lower_end() {
-        let track = Track {
-            title: String::new(),
-            is_logarithmic: true,
-            has_zero: false,
-            least: 0.0,
-            share: 1.0,
-            curves: Vec::new(),
-        };
-        let end = |value: f64, error: f64| track.end_of_band(value, error);
-        assert_eq!([end(0.05, 0.05), end(-0.05, 0.05)], [-1.0; 2]);
-        // The error is six times the value: zero lies in the band, and so does everything below the value.
-        assert_eq!(end(1e-5, -6e-5), SMALLEST.log10());
-        assert!(end(1e-5, -6e-6) < -5.0 && end(1e-5, -6e-6) > -6.0);
-    }
-
-    #[test]
-    fn a_range_holds_the_bands_but_for_one_that_is_far_wider_than_others() {
-        let of = |values: [f64; 4], errors: [f64; 4]| {
-            let places = values.iter().enumerate();
-            let track = Track {
-                title: String::new(),
-                is_logarithmic: false,
-                has_zero: false,
-                least: 0.0,
-                share: 1.0,
-                curves: vec![Curve {
-                    name: String::new(),
-                    stroke: Stroke::curve(0),
-                    places: places.map(|(at, &value)| (at as f64, value)).collect(),
-                    errors: errors.to_vec(),
-                }],
-            };
-            track.range().unwrap()
-        };
-        let values = [1.0, 1.1, 1.0, 1.1];
-        let (low, high) = of(values, [0.4, 0.5, 0.4, 0.5]);
-        assert!(
-            low < 0.6 && low > 0.4 && high > 1.6 && high < 1.8,
-            "{low} {high}"
-        );
-        let (low, high) = of(values, [0.01, 50.0, 0.01, 0.01]);
-        assert!(low > 0.8 && high < 1.3, "{low} {high}");
-        // What is constant but for rounding has labels of few digits.
-        let (low, high) = of([-0.5, -0.5, -0.5 - 1e-12, -0.5], [0.0; 4]);
-        assert!(high - low > 0.1, "{low} {high}");
-    }
 }

@@ -3,7 +3,7 @@
 
 use plotters_backend::text_anchor::HPos;
 
-use crate::continuation::{BifurcationStatus, Label, SweepResult};
+use crate::continuation::{BifurcationStatus, Label, LevelCrossing, SweepResult};
 use crate::density::Observable;
 
 use crate::figure::canvas::legend::Swatch;
@@ -18,7 +18,7 @@ use crate::figure::canvas::{letters, symbols};
 const ROW: f64 = 16.0;
 /// Gap between the map and the lowest row.
 const GAP: f64 = 4.0;
-/// Shade of the band in which an unresolved bifurcation lies.
+/// Shade of the band of an error.
 const BAND: Colour = WHITE.at(0.45);
 
 /// The lines of bifurcations of other observables.
@@ -69,8 +69,8 @@ struct PlacedLabel<'a> {
     kind: Kind,
     status: BifurcationStatus,
     value: f64,
-    /// The band in which it lies.
-    bracket: (f64, f64),
+    /// The interval of its stated error, as far as the figure shows it.
+    band: (f64, f64),
     /// Pixels from the left of the page to the middle of the text.
     middle: f64,
     /// Half the width of the text, in pixels.
@@ -83,7 +83,6 @@ struct PlacedLabel<'a> {
 pub(crate) struct Labels<'a> {
     placed: Vec<PlacedLabel<'a>>,
     rows: usize,
-    range: (f64, f64),
 }
 
 impl<'a> Labels<'a> {
@@ -106,19 +105,21 @@ impl<'a> Labels<'a> {
         Self::placed(look, result, &kind, (range, (left, width)))
     }
 
-    /// The same for a figure of power spectra, whose changes stand out.
-    pub(crate) fn of_spectra(
+    /// The same for a figure of one power spectrum, by its name: its own changes stand out, and those of other spectra
+    /// stand back.
+    pub(crate) fn of_spectrum(
         look: &Look,
         result: &'a SweepResult,
-        range: (f64, f64),
-        map: (f64, f64),
+        name: &str,
+        place: ((f64, f64), (f64, f64)),
     ) -> Self {
+        let of = |crossing: &LevelCrossing| crossing.spectral().is_some_and(|(_, of)| of == name);
         let kind = |row: &Label| match (row.bifurcation(), row.spectral_change()) {
-            (Some(_), _) => Some(Kind::Other),
-            (_, Some(_)) => Some(Kind::Spectral),
+            (None, Some(crossing)) if of(crossing) => Some(Kind::Spectral),
+            (Some(_), _) | (_, Some(_)) => Some(Kind::Other),
             _ => row.d_bifurcation().map(|_| Kind::Stability),
         };
-        Self::placed(look, result, &kind, (range, map))
+        Self::placed(look, result, &kind, place)
     }
 
     fn placed(
@@ -153,7 +154,9 @@ impl<'a> Labels<'a> {
                 kind,
                 status,
                 value,
-                bracket: row_of.bracket(),
+                band: [-1.0, 1.0]
+                    .map(|sign| (value + sign * row_of.error()).clamp(range.0, range.1))
+                    .into(),
                 middle,
                 half,
                 row,
@@ -162,7 +165,6 @@ impl<'a> Labels<'a> {
         Self {
             placed,
             rows: rows.len(),
-            range,
         }
     }
 
@@ -180,9 +182,8 @@ impl<'a> Labels<'a> {
                 panel.draw(&line, Shape::Line(faint.dashed(OTHERS)));
                 continue;
             }
-            if label.status == BifurcationStatus::Unresolved {
-                let a = label.bracket.0.max(self.range.0);
-                let b = label.bracket.1.min(self.range.1);
+            let (a, b) = label.band;
+            if b > a {
                 panel.draw(&[(a, from), (b, from), (b, to), (a, to)], Shape::Area(BAND));
             }
             panel.draw(&line, Shape::Line(Stroke::solid(WHITE, 3.2)));
@@ -194,8 +195,7 @@ impl<'a> Labels<'a> {
     pub(crate) fn draw_plain(&self, panel: &Panel, (from, to): (f64, f64)) {
         for label in self.placed.iter().rev() {
             let line = [(label.value, from), (label.value, to)];
-            let a = label.bracket.0.max(self.range.0);
-            let b = label.bracket.1.min(self.range.1);
+            let (a, b) = label.band;
             if label.kind.is_strong() && b > a {
                 let band = label.kind.colour().at(0.08);
                 panel.draw(&[(a, from), (b, from), (b, to), (a, to)], Shape::Area(band));

@@ -1,12 +1,13 @@
 //! Parts of captions, ready to be pasted: of which system a figure is, by which method, what is marked.
 
+use crate::continuation::curve::{EndReason, Plane};
 use crate::continuation::{BifurcationStatus, Label, Located, SweepResult};
 use crate::density::Observable;
 use crate::figure::canvas::look::{DECADES, Look};
 use crate::figure::canvas::symbols;
 use crate::figure::parts::names;
 use crate::space::Axis;
-use crate::system::{Family, Model};
+use crate::system::{self, Family, Model};
 use crate::topology::Between;
 
 /// The caption of a figure of a sweep, from what is seen in it and what is marked in it; empty parts are left out.
@@ -87,8 +88,7 @@ pub(crate) fn parameter(family: &Family) -> String {
 
 /// A symbol without its markup.
 pub(crate) fn in_letters(symbol: &str) -> String {
-    let raised = symbol.replace("^{2}", "²").replace("^{3}", "³");
-    raised.replace(['{', '}', '$', '\\'], "")
+    system::in_letters(symbol).replace(['$', '\\'], "")
 }
 
 /// A value to the second digit of its error.
@@ -123,6 +123,18 @@ pub(crate) fn parameter_named(family: &Family, name: &str) -> String {
     in_letters(&names::symbol_of(family, name))
 }
 
+/// Why a curve ends, with the parameters as figures have them.
+pub(crate) fn end(family: &Family, reason: &EndReason, plane: &Plane) -> String {
+    match reason {
+        EndReason::Border(side) => {
+            let side = plane.sides().get(*side);
+            let parameter = side.map(|side| parameter_named(family, &side.parameter));
+            format!("border of the box in {}", parameter.unwrap_or_default())
+        }
+        reason => reason.words(plane),
+    }
+}
+
 /// The system with its parameters but for one that is swept besides the family's own.
 fn system_in(family: &Family, second: &str) -> String {
     let model = family.model();
@@ -149,7 +161,11 @@ fn system_in(family: &Family, second: &str) -> String {
 /// The equations in the symbols of the figure: typed ones typeset, and what their noises are.
 fn equations_of(model: &Model) -> String {
     let Some(typed) = model.typed() else {
-        return model.equations.join("; ");
+        let lines = model.equations.iter();
+        let lines = lines.map(|line| in_symbols(model, line).replace("ẋ'", "ẍ"));
+        // What says nothing but what the symbol means.
+        let lines = lines.filter(|line| line != "x' = ẋ");
+        return lines.collect::<Vec<_>>().join("; ");
     };
     let (mut lines, source) = (typed.typeset(), typed.source());
     let typed = source.equations().len() + source.definitions().len();
@@ -160,6 +176,25 @@ fn equations_of(model: &Model) -> String {
         true => equations.replace("σ₂", "σ²"),
         false => equations,
     }
+}
+
+/// A formula or an inequality with the symbols that figures have for its states.
+pub(crate) fn in_symbols(model: &Model, text: &str) -> String {
+    let is_of_word =
+        |letter: char| letter.is_alphabetic() || letter.is_ascii_digit() || letter == '_';
+    let (mut made, mut rest) = (String::new(), text);
+    while let Some(begin) = rest.find(is_of_word) {
+        let after = &rest[begin..];
+        let end = after
+            .find(|letter| !is_of_word(letter))
+            .unwrap_or(after.len());
+        let word = &after[..end];
+        let state = model.axes.iter().find(|axis| axis.name == word);
+        made += &rest[..begin];
+        made += &state.map_or_else(|| word.to_owned(), |axis| in_letters(&axis.symbol));
+        rest = &after[end..];
+    }
+    made + rest
 }
 
 /// The method and the cells of what is watched.
@@ -187,6 +222,37 @@ pub(crate) fn solved_by(
     });
     let cells: Vec<String> = cells.collect();
     format!("Method: {method}; cells: {}.", cells.join(", "))
+}
+
+/// Which axes modes carry, and how many; nothing where all have cells.
+pub(crate) fn modes(family: &Family, axes: &[Axis]) -> String {
+    let carried = axes.iter().enumerate().filter(|(_, axis)| axis.is_modes());
+    let words = carried.map(|(number, axis)| {
+        let of = match axis.is_phase() {
+            true => "the phase of the forcing".to_owned(),
+            false => in_letters(family.axis_symbol(number)),
+        };
+        let kind = if axis.is_closed() {
+            "harmonics"
+        } else {
+            "modes"
+        };
+        format!("{of} by {} {kind}", axis.mode_number())
+    });
+    match words.collect::<Vec<_>>().join(", ") {
+        words if words.is_empty() => words,
+        words => format!("Carried by modes: {words}."),
+    }
+}
+
+/// A caption with a sentence before that of the version.
+pub(crate) fn with_sentence(caption: &str, sentence: &str) -> String {
+    match caption.rsplit_once(&version()) {
+        Some((before, after)) if !sentence.is_empty() => {
+            format!("{before}{sentence} {}{after}", version())
+        }
+        _ => caption.to_owned(),
+    }
 }
 
 /// What is drawn between the cells of some observables.
@@ -226,14 +292,39 @@ pub(crate) fn bifurcations(result: &SweepResult) -> String {
     let of_stability: Vec<String> = result.labels.iter().filter_map(stability).collect();
     let named = [("P", of_shape), ("D", of_stability)].into_iter();
     let named = named.filter(|(_, rows)| !rows.is_empty());
-    let sentences =
-        named.map(|(letter, rows)| format!("{letter}-bifurcations: {}.", rows.join("; ")));
+    let sentences = named.map(|(letter, rows)| {
+        format!(
+            "{letter}-bifurcations, each in the band of its error: {}.",
+            rows.join("; ")
+        )
+    });
     sentences.collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn states_of_built_in_models_have_one_name() {
+        for (name, law) in [
+            ("coulomb", "f_c sgn(ẋ)"),
+            ("dahl", "z' = ẋ - (λ |ẋ|/f_c) z"),
+        ] {
+            let equations = equations_of(&system::registry::find(name).unwrap());
+            assert!(
+                equations.starts_with("ẍ = -κ ẋ - α x - μ x³"),
+                "{equations}"
+            );
+            assert!(equations.contains(law), "{equations}");
+            assert!(!equations.contains('y'), "{equations}");
+        }
+        let model = system::registry::find("coulomb").unwrap();
+        assert_eq!(
+            in_symbols(&model, "y > 2 and x y_2 < 3"),
+            "ẋ > 2 and x y_2 < 3"
+        );
+    }
 
     #[test]
     fn values_have_the_digits_of_their_errors() {

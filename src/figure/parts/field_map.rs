@@ -1,7 +1,8 @@
 //! A field of a passage over two axes as a map: colours with contours, or with the lines of a current.
 
+use super::field_border::FieldBorder;
 use crate::continuation::StateField;
-use crate::figure::canvas::contour::{GridValues, beside, simplify};
+use crate::figure::canvas::contour::{GridValues, simplify};
 use crate::figure::canvas::heat::Picture;
 use crate::figure::canvas::look::{Look, on_heat};
 use crate::figure::canvas::page::{Page, Panel, Rectangle, Shape};
@@ -75,6 +76,8 @@ pub(in crate::figure) struct FieldMap<'a> {
     values: Vec<f64>,
     /// The same of each field.
     shown: Vec<Vec<f64>>,
+    /// The border across which it may jump.
+    border: Option<FieldBorder<'a>>,
 }
 
 impl<'a> FieldMap<'a> {
@@ -120,27 +123,33 @@ impl<'a> FieldMap<'a> {
             largest,
             values,
             shown,
+            border: None,
         })
+    }
+
+    /// The same of a field that may jump on the border of a target.
+    pub(in crate::figure) fn around(self, is_inside: impl Fn((f64, f64)) -> bool + 'a) -> Self {
+        let values = (self.values.as_slice(), self.largest);
+        let border = FieldBorder::new(&self.places, values, is_inside);
+        Self {
+            border: Some(border),
+            ..self
+        }
     }
 
     /// The colours of all pixels, between the centres of cells by straight lines.
     pub(in crate::figure) fn picture(&self, look: &Look, map: Rectangle, largest: f64) -> Picture {
         let size = (resolution(map.width), resolution(map.height));
         let [x, y] = &self.places;
-        let along = |places: &[f64], range, count| -> Vec<(usize, f64)> {
-            let all = middles(range, count).into_iter();
-            all.filter_map(|at| beside(places, at)).collect()
-        };
-        let (across, up) = (
-            along(x, self.ranges[0], size.0),
-            along(y, self.ranges[1], size.1),
-        );
-        let value = |i: usize, j: usize| self.values[i * y.len() + j];
+        let across = middles(self.ranges[0], size.0);
+        let up = middles(self.ranges[1], size.1);
         Picture::new(look, size, |column, row| {
-            let ((i, s), (j, t)) = (across[column], up[row]);
-            let low = (1.0 - s) * value(i, j) + s * value(i + 1, j);
-            let high = (1.0 - s) * value(i, j + 1) + s * value(i + 1, j + 1);
-            Some(((1.0 - t) * low + t * high) / largest)
+            let place = (across[column], up[row]);
+            let values = match &self.border {
+                Some(border) => border.side(&self.places, place),
+                None => &self.values[..],
+            };
+            Some(GridValues { x, y, values }.between(place)? / largest)
         })
     }
 
@@ -154,13 +163,22 @@ impl<'a> FieldMap<'a> {
 
     fn draw_contours(&self, look: &Look, panel: &Panel, largest: f64) {
         let [x, y] = &self.places;
-        let values = &self.values;
+        let values = match &self.border {
+            Some(border) => border.outer(),
+            None => &self.values[..],
+        };
         let grid = GridValues { x, y, values };
         for share in LEVELS {
             let width = if share == HALF { 1.6 } else { 0.8 };
             let stroke = Stroke::solid(on_heat(look, share), width);
             for line in grid.contour(share * largest) {
-                panel.draw(&line, Shape::Line(stroke));
+                let parts = match &self.border {
+                    Some(border) => border.outside(&line),
+                    None => vec![line],
+                };
+                for part in parts {
+                    panel.draw(&part, Shape::Line(stroke));
+                }
             }
         }
     }

@@ -1,12 +1,17 @@
 //! Curves of levels in the figure of a plane: where a number of the steady state, such as a mean time of first passage,
 //! is at a level.
 
+use super::caption;
 use super::curve_line::draw_points;
+use super::measure_names::Named;
 use crate::continuation::BifurcationStatus;
 use crate::continuation::curve::{CurvePoint, LevelCurve, Plane, level_name};
+use crate::density::Observable;
 use crate::figure::canvas::legend::Swatch;
 use crate::figure::canvas::page::Panel;
 use crate::figure::canvas::style::{INK, Stroke};
+use crate::figure::canvas::symbols;
+use crate::system::Family;
 
 /// Width of their lines, in pixels, and dashes of several, so that each is told from the others.
 const WIDE: f64 = 1.6;
@@ -17,6 +22,10 @@ const DASHES: [&[f64]; 3] = [&[9.0, 2.0, 2.0, 2.0], &[3.0, 2.0], &[12.0, 3.0]];
 pub(crate) struct LevelLines<'a> {
     pub(crate) plane: &'a Plane,
     pub(crate) curves: &'a [LevelCurve],
+    /// Gives symbols of states.
+    pub(crate) family: &'a Family,
+    /// The densities that are watched.
+    pub(crate) observables: &'a [Observable],
 }
 
 impl LevelLines<'_> {
@@ -32,11 +41,18 @@ impl LevelLines<'_> {
         points.map(|points| points.map(|point| point.values).collect())
     }
 
+    /// What is where on one of them, as markup: `mean time (exit) = 1000`.
+    pub(crate) fn words(&self, curve: &LevelCurve) -> String {
+        let title = Named::new(self.family, self.observables).title(&curve.asked.measure);
+        format!("{title} = {}", symbols::value(curve.asked.level))
+    }
+
     /// What the legend says of them.
     pub(crate) fn entries(&self) -> Vec<(Swatch, String)> {
         let curves = self.curves.iter().enumerate();
-        let entry =
-            |(number, curve): (usize, &LevelCurve)| (Swatch::Curve(stroke(number)), curve.words());
+        let entry = |(number, curve): (usize, &LevelCurve)| {
+            (Swatch::Curve(stroke(number)), self.words(curve))
+        };
         curves.map(entry).collect()
     }
 
@@ -49,7 +65,7 @@ impl LevelLines<'_> {
             format!(
                 " On {} {} ({} points, {located} of them located; the error across it is at most {:.1e} of the sides of the box).",
                 level_name(number),
-                curve.words(),
+                caption::in_letters(&self.words(curve)),
                 curve.points.len(),
                 errors.fold(0.0, f64::max)
             )

@@ -84,17 +84,19 @@ pub(crate) fn meet_births(lines: &mut [Vec<(f64, f64)>], changes: &[f64], values
     }
 }
 
-/// What lies about a change: its value, and how far from it the ends of branches are looked for.
+/// What lies about a change: its value, how far from it the ends of branches are looked for, and up to where values
+/// count as added to narrow it.
 #[derive(Debug, Clone, Copy)]
 struct Around {
     change: f64,
     gap: f64,
+    near: f64,
 }
 
 impl Around {
     /// Whether a value is one of those that were added to narrow the change.
     fn is_near(&self, value: f64) -> bool {
-        (value - self.change).abs() <= NEAR * self.gap
+        (value - self.change).abs() <= self.near
     }
 
     /// Whether a branch holds nothing but such values: pieces that no link has joined.
@@ -176,7 +178,10 @@ pub(crate) fn meet(
     let steps = points.windows(2).map(|pair| pair[1].value - pair[0].value);
     let gap = 1.01 * steps.fold(0.0, f64::max);
     for &change in changes {
-        let around = Around { change, gap };
+        // What lies beyond the middle of two changes belongs to the other one.
+        let others = changes.iter().map(|other| 0.5 * (other - change).abs());
+        let near = others.filter(|&half| half > 0.0).fold(NEAR * gap, f64::min);
+        let around = Around { change, gap, near };
         let [lower, upper] = [true, false].map(|is_below| around.ends(branches, is_below));
         let (many, few) = if lower.len() > upper.len() {
             (lower, upper)
@@ -275,5 +280,45 @@ mod tests {
                 assert!((place.1.abs() - peak(place.0)).abs() < 1e-9, "{place:?}");
             }
         }
+    }
+
+    #[test]
+    fn branches_reach_two_changes_that_are_near_each_other() {
+        // A pair is born at 0.809, and the other peak and the valley meet at 0.821: far nearer than the longest step.
+        let (birth, death) = (0.809f64, 0.821f64);
+        let values = [0.6, 0.7, 0.8, 0.81, 0.813, 0.817, 0.82, 0.83, 0.9, 1.0];
+        let upper = |value: f64| 0.2 + 0.5 * (value - birth).sqrt();
+        let lower = |value: f64| -0.2 - 0.5 * (death - value).sqrt();
+        let middle = |value: f64| {
+            let share = (value - birth) / (death - birth);
+            0.2 - 0.4 * share
+        };
+        let of = |&value: &f64| {
+            let mut peaks = Vec::new();
+            peaks.extend((value < death).then(|| lower(value)));
+            peaks.extend((value > birth).then(|| upper(value)));
+            point(value, Some(&peaks))
+        };
+        let points: Vec<Point> = values.iter().map(of).collect();
+        let window = (-1.0, 1.0);
+        let between = values.iter().filter(|value| (birth..death).contains(value));
+        let valley = Branch {
+            kind: FeatureKind::Valley,
+            places: between.map(|&value| (value, middle(value))).collect(),
+        };
+        let peaks = branches(&points, 0, FeatureKind::Peak, window);
+        assert_eq!(peaks.len(), 2);
+        let mut all = [peaks, vec![valley]];
+        meet(&mut all, &[birth, death], &points, window);
+        let ends = |list: &[Branch]| -> Vec<[f64; 2]> {
+            let ends = list
+                .iter()
+                .map(|one| [one.places.first(), one.places.last()]);
+            ends.map(|ends| ends.map(|end| end.unwrap().0)).collect()
+        };
+        let mut found = ends(&all[0]);
+        found.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        assert_eq!(found, [[0.6, death], [birth, 1.0]]);
+        assert_eq!(ends(&all[1]), [[birth, death]]);
     }
 }

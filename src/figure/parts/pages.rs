@@ -54,6 +54,7 @@ fn on_pages(
             look: Look { tall, ..print.look },
             part: (number, pages),
             solved_by: print.solved_by.clone(),
+            modes: print.modes.clone(),
             ..*print
         })
     };

@@ -9,6 +9,16 @@ use crate::sweep_file::names::quotable;
 use crate::sweep_file::reader::Reader;
 use crate::system::{Family, MeasureLevel};
 
+/// What the names of numbers begin with that a table of the file asks for.
+const ASKED_BY: [(&str, &str); 6] = [
+    ("decay_", "[relaxation]"),
+    ("frequency_", "[relaxation]"),
+    ("spectral_", "[spectrum]"),
+    ("correlation_time", "[spectrum]"),
+    ("exponent", "[exponent]"),
+    ("divergence", "[exponent]"),
+];
+
 /// Checks `[levels]`: each is of a number that the sweep has, with an error.
 pub(super) fn read(
     reader: &mut Reader<'_>,
@@ -36,7 +46,14 @@ pub(super) fn read(
             "`{}` is no number of this sweep that has an error",
             quotable(measure)
         );
-        let remedy = format!("take one of {}", known.join(", "));
+        let asked = ASKED_BY.iter().find(|(word, _)| measure.starts_with(word));
+        let remedy = match asked {
+            Some((_, table)) => format!(
+                "add the table {table}, which asks for such numbers, or take one of {}",
+                known.join(", ")
+            ),
+            None => format!("take one of {}", known.join(", ")),
+        };
         let diagnostic = Diagnostic::new(title).remedy(remedy);
         let place = reader.key_place(&["levels", measure]);
         reader.report(diagnostic.at(place, "this number"));

@@ -32,7 +32,7 @@ use crate::continuation::LocateOptions;
 use crate::density::Observable;
 use crate::figure::FigureSettings;
 use crate::method::DerivedMeasure;
-use crate::system::Family;
+use crate::system::{Family, in_letters};
 use crate::topology::DetectOptions;
 
 pub use super::draft::Modes;
@@ -139,11 +139,16 @@ impl Settings {
         if !reader.is_clean() {
             return Err(reader.into_report());
         }
-        let (model, parameter) = (family.model(), family.parameter());
-        let title = || match (&mapped, model.title.as_str()) {
-            (Some(map), "") => format!("Map of {parameter} and {}", map.parameter),
+        let (model, parameter) = (family.model(), in_letters(family.symbol()));
+        let second = mapped.as_ref().map(|map| {
+            let mut known = model.parameters.iter();
+            let known = known.find(|one| one.name == map.parameter);
+            in_letters(known.map_or(map.parameter.as_str(), |one| one.symbol.as_str()))
+        });
+        let title = || match (&second, model.title.as_str()) {
+            (Some(second), "") => format!("Map of {parameter} and {second}"),
             (None, "") => format!("Sweep of {parameter}"),
-            (Some(map), of) => format!("{of}, map of {parameter} and {}", map.parameter),
+            (Some(second), of) => format!("{of}, map of {parameter} and {second}"),
             (None, of) => format!("{of}, sweep of {parameter}"),
         };
         Ok(Self {

@@ -166,6 +166,15 @@ fn defaults_are_those_of_the_options() {
         spec.title,
         "Duffing oscillator with Coulomb friction, sweep of f_c"
     );
+    let swept = FILE
+        .replace("sigma2 = 0.01", "f_c = 0")
+        .replace("\"f_c\"", "\"sigma2\"");
+    let of_noise = parse(&swept.replace("-0.02", "0.001"), &[]).unwrap();
+    assert!(
+        of_noise.title.ends_with("sweep of σ²"),
+        "{}",
+        of_noise.title
+    );
     assert_eq!(spec.method, MethodSettings::default());
     assert_eq!(spec.detect, DetectOptions::default());
     assert_eq!(spec.locate, LocateOptions::default());
@@ -343,6 +352,28 @@ fn a_state_that_cannot_cross_zero_is_looked_at_on_the_positive_side() {
         notes.iter().all(|note| !note.starts_with(said)),
         "{notes:?}"
     );
+}
+
+#[test]
+fn a_share_ends_at_one_though_paths_from_beyond_run_away() {
+    // Beyond the capacity K, at which noise and drift vanish, paths grow without end.
+    for (capacity, end) in [("1", 1.0), ("5", 5.0)] {
+        let text = format!(
+            "[system.equations]\nx = \"a x (1 - x/K) (K/2 - x)\"\n[system.noise]\ninterpretation = \"stratonovich\"\n\
+             x = \"0.5 x (1 - x/K)\"\n[system.parameters]\nK = {capacity}\n[sweep]\nparameter = \"a\"\nfrom = 1\n\
+             to = 2\npoints = 3\n[cells]\nx = {{ count = 40 }}\n"
+        );
+        let prepared = parse(&text, &[]).unwrap().prepare(&Cancellation::new());
+        let settings = prepared.unwrap().settings;
+        assert_eq!(settings.axes[0].range(), Some((0.0, end)));
+        let said = format!("cells: x to {end}, as no path crosses");
+        let mut notes = settings.chosen.iter();
+        assert!(
+            notes.any(|note| note.starts_with(&said)),
+            "{:?}",
+            settings.chosen
+        );
+    }
 }
 
 #[test]

@@ -32,6 +32,8 @@ pub(crate) struct FormulaHazard {
     pub parameters: Vec<f64>,
     /// Whether it surely fails there; otherwise that could not be excluded.
     pub certain: bool,
+    /// Numbers of the parameters that it depends on, where it depends on no state.
+    pub of_parameters: Option<Vec<usize>>,
 }
 
 impl TypedEquations {
@@ -151,7 +153,10 @@ impl TypedEquations {
         let mut found = Vec::new();
         for (place, expression) in self.formulas() {
             for hazard in reading.scope.graph().hazards(expression, &domain) {
+                let needs = reading.scope.graph().dependence(hazard.part);
+                let is_of_states = needs.time || !needs.states.is_empty();
                 found.push(FormulaHazard {
+                    of_parameters: (!is_of_states).then_some(needs.parameters),
                     place: place.clone(),
                     kind: hazard.kind,
                     part: reading.scope.typeset(hazard.part),

@@ -37,7 +37,7 @@ impl Scene<'_> {
         };
         let Some(curve) = self.curves.first() else {
             let what = match self.levels.curves.first() {
-                Some(curve) => format!("Where {}", curve.words()),
+                Some(curve) => format!("Where {}", caption::in_letters(&self.levels.words(curve))),
                 None => "The fixed point".to_owned(),
             };
             return format!(
@@ -57,7 +57,8 @@ impl Scene<'_> {
             value(self.row.value, 0),
         );
         for end in &curve.ends {
-            text += &format!(" {}: {}.", end.label, end.reason.words(&curve.plane));
+            let reason = caption::end(self.family, &end.reason, &curve.plane);
+            text += &format!(" {}: {reason}.", end.label);
         }
         for point in codimension_two(self.curves) {
             let [x, y] = [0, 1].map(|side| value(point.values[side], side));
