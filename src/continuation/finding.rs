@@ -94,6 +94,12 @@ pub enum Finding {
         /// The power with which the density falls at the end of the range.
         power: f64,
     },
+    /// What a formula of the coordinate adds to its mean does not become less toward an end of the axis: the mean does
+    /// not exist, or is not known to.
+    EndlessMean {
+        /// Which of the formulas that are averaged it is.
+        average: usize,
+    },
     /// A watched density is negative somewhere: it has wiggles that the cells do not resolve.
     NegativeDensity {
         /// Σ |min(mass, 0)| of the worst of the watched densities.

@@ -18,6 +18,7 @@
 //! | decay of the last harmonics of an angle without noise | `spectral_viscosity.rs` |
 //! | the matrix of a process that ends in a region | `absorbing.rs` |
 //! | masses of cells and moments from the unknowns | `masses.rs` |
+//! | one axis: its motion as a birth-and-death chain | `chain/` |
 //! | one axis: the steady state by quadrature, its extrema from the equations | `one_axis/` |
 //! | dQ/dθ | `derivative.rs` |
 //! | axes graded toward switching surfaces | `grading.rs` |
@@ -29,6 +30,7 @@ mod accuracy_tests;
 mod assemble;
 #[cfg(test)]
 mod banded_tests;
+mod chain;
 mod columns;
 mod derivative;
 mod geometry;
@@ -51,6 +53,7 @@ pub(crate) use absorbing::{
 };
 pub use assemble::assemble;
 pub(crate) use assemble::{assemble_damped, assemble_lines};
+pub(crate) use chain::{Chain, DEPTH, Ending as AxisEnd, Line, PLACES, Reach, Reduced};
 pub(crate) use columns::LineRates;
 pub use derivative::assemble_derivative;
 pub use grading::automatic_grading;

@@ -23,6 +23,7 @@ pub(super) struct Maps {
 /// What turns masses into the moments of a quantity.
 #[derive(Debug)]
 pub(super) struct AveragedMap {
+    pub(super) quantity: BoundQuantity,
     pub(super) moments: QuantityMoments,
     /// Where the masses carry no noise: the same with coarser sub-cells, and the quantity at the nodes of all cells.
     pub(super) judge: Option<(QuantityMoments, Vec<f64>)>,

@@ -133,6 +133,22 @@ impl<'a> Reporter<'a> {
             .collect()
     }
 
+    /// Nothing lies beyond the ends for moments: they are those of the whole density.
+    pub(super) fn is_whole(&mut self) {
+        self.beyond
+            .iter_mut()
+            .for_each(|ends| *ends = [Beyond::default(); 2]);
+    }
+
+    /// Says that the deviation along an axis rests on a tail, or does not exist, unless that is told already.
+    pub(super) fn heavy_tail(&mut self, axis: usize, power: f64) {
+        let is_told =
+            |one: &Finding| matches!(one, Finding::HeavyTail { axis: other, .. } if *other == axis);
+        if !self.report.findings.iter().any(is_told) {
+            self.tell(Finding::HeavyTail { axis, power });
+        }
+    }
+
     /// The solution with these densities, and with the measures that are derived from them.
     pub(super) fn solution(
         mut self,

@@ -88,11 +88,12 @@ impl Problem {
             Ok::<_, MethodError>(Some((map(fine)?, coarse.map(map).transpose()?)))
         });
         let watched: Result<Vec<_>, _> = watched.collect();
-        let averaged = averaged.iter().map(|quantity| {
-            let map = |detail| QuantityMoments::new(space, quantity, detail, &planes);
+        let averaged = averaged.into_iter().map(|quantity| {
+            let map = |detail| QuantityMoments::new(space, &quantity, detail, &planes);
             AveragedMap {
                 moments: map(fine),
-                judge: coarse.map(|detail| (map(detail), values_at_nodes(space, quantity))),
+                judge: coarse.map(|detail| (map(detail), values_at_nodes(space, &quantity))),
+                quantity,
             }
         });
         Ok(Maps {

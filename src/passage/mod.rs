@@ -48,6 +48,7 @@
 //! | its density, from one grid to another | `lasting.rs` |
 //! | probabilities at times, and quantiles | `survival.rs` |
 //! | numbers with errors | `timed.rs` |
+//! | the same on one axis, from a chain | `on_line.rs` |
 //! | what is handed from value to value | `memory.rs` |
 //! | numbers as fields over the start | `field.rs` |
 //! | the same beside a border | `rim.rs` |
@@ -63,6 +64,7 @@ mod exits;
 mod field;
 mod lasting;
 mod memory;
+mod on_line;
 mod on_way;
 mod rate;
 mod reactive;
@@ -80,6 +82,7 @@ mod times;
 pub use density_start::KnownDensity;
 pub use field::{FieldTarget, PassageField, field};
 pub(crate) use memory::PassageMemory;
+pub(crate) use on_line::{timed_on_line, transitions_on_line};
 pub(crate) use reactive::are_apart;
 pub use reactive::{Reactive, reactive};
 pub(crate) use timed::timed_from;

@@ -106,6 +106,17 @@ fn cells_in_words(family: &Family, finding: &Finding) -> Option<String> {
                  standard deviation of {axis} rests on what is beyond, or does not exist, and has no error"
             )
         }
+        Finding::EndlessMean { average } => {
+            let name = family
+                .questions
+                .averaged
+                .get(average)
+                .map_or("", |one| one.name());
+            format!(
+                "the mean of {name} has no error: what {name} adds to it does not become less toward an end of the \
+                 axis, so that it does not exist, or is not known to"
+            )
+        }
         Finding::NegativeDensity { mass } => format!(
             "{:.2} % of the mass of a watched density is negative: it has wiggles that the cells do not resolve; use more cells",
             100.0 * mass

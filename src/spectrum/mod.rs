@@ -84,6 +84,7 @@
 //! | the model as a function of frequency and lag | `transfer.rs` |
 //! | lines of a spectrum, and what changes its shape | `peak.rs` |
 //! | spectra with the errors of the cells | `power.rs` |
+//! | both on one axis, from a chain | `on_line.rs` |
 //! | errors from half of the dissipation and fewer cells | `errors.rs` |
 
 mod at_frequency;
@@ -96,6 +97,7 @@ mod kramers;
 mod model;
 mod modes;
 mod motion;
+mod on_line;
 mod peak;
 mod power;
 mod real_shifts;
@@ -106,6 +108,7 @@ mod switching;
 mod transfer;
 
 pub use kramers::{EscapeFormulas, escape_formulas};
+pub(crate) use on_line::{power_spectra_on_line, slow_modes_on_line};
 pub(crate) use power::rate_of_change;
 pub use power::{Features, Power, PowerQuestion, Spectrum, StateFunction, power_spectra};
 pub use slow::{SlowMode, SlowModes, slow_modes};

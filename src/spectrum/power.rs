@@ -76,7 +76,7 @@ pub struct Power {
 }
 
 /// Numbers of a feature of a spectrum.
-const FEATURES: usize = 5;
+pub(super) const FEATURES: usize = 5;
 
 /// The spectra of a system on the cells of a sweep. They do not depend on what was solved before.
 ///
@@ -159,7 +159,7 @@ pub(crate) fn rate_of_change(
 /// Relative error from which a number of a spectrum is not told.
 const UNKNOWN: f64 = 0.2;
 
-fn features(known: &[Known]) -> Features {
+pub(super) fn features(known: &[Known]) -> Features {
     let told = |(value, error): Known, size: f64| {
         let is_known = error <= UNKNOWN * value.abs().max(size);
         is_known.then_some((value, error))

@@ -19,7 +19,7 @@ use crate::stationary::generator::{AbsorbingWork, RateOptions};
 use crate::system::System;
 
 /// Relative error from which a mode is not told.
-const UNKNOWN: f64 = 0.1;
+pub(super) const UNKNOWN: f64 = 0.1;
 
 /// A mode with which deviations from the steady state die out.
 #[derive(Debug, Clone, Copy, PartialEq)]

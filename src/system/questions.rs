@@ -38,3 +38,10 @@ pub struct Questions {
     /// What is asked of fluctuations in the steady state.
     pub spectrum: Option<SpectrumQuestion>,
 }
+
+impl Questions {
+    /// Whether slow modes are needed: they are wanted, or rates between two states are.
+    pub(crate) fn asks_for_modes(&self) -> bool {
+        self.slow_modes > 0 || self.passages.iter().any(|one| one.switching)
+    }
+}

@@ -122,7 +122,7 @@ fn a_level_of_a_mean_time_is_located_where_the_formula_crosses_it() {
 fn a_question_without_an_answer_leaves_the_rest_and_says_why() {
     let room = Room::new();
     for (old, new, code, words) in [
-        ("far = \"not (-2 <= x <= 2)\"", "far = \"x > 7\"", "passage-nowhere", "widen the ranges"),
+        ("far = \"not (-2 <= x <= 2)\"", "far = \"x > 40\"", "passage-nowhere", "widen the ranges"),
         ("far = \"not (-2 <= x <= 2)\"", "far = \"x < 7\"", "passage-everywhere", "nothing to wait for"),
         ("start = { x = 0 }", "start = { x = 3 }", "passage-start", "it starts inside"),
     ] {

@@ -19,6 +19,7 @@ mod location;
 mod long_passages;
 mod moving_jump;
 mod natural_ends;
+mod one_axis;
 mod passage_fields;
 mod passage_starts;
 mod passages;

@@ -249,7 +249,8 @@ impl Walker<'_> {
                 ACROSS * change / (steepness * apart(met.foot, beside.foot))
             });
             let bend = bend.max(LEAST_BEND);
-            let (own, line) = (met.read.error / steepness, 0.5 * bend * met.spread);
+            // Half of the bend is what the secant leaves; that beside is not quite that here, and counts twice.
+            let (own, line) = (met.read.error / steepness, bend * met.spread);
             let (solver, sampling) = match self.is_sampled {
                 true => (line, own),
                 false => (own + line, 0.0),

@@ -88,6 +88,7 @@ stored! {
         };
         Self::FewReplicates { usable, wanted } => ("few-replicates", None, vec![usable as f64, wanted as f64]);
         Self::FewSlowModes { known, wanted } => ("few-slow-modes", None, vec![known as f64, wanted as f64]);
+        Self::EndlessMean { average } => ("endless-mean", None, vec![average as f64]);
         Self::NoPassage { passage, fault } => (fault.code(), None, vec![passage as f64]);
         Self::PassageCut { passage, share, longest } => ("passage-cut", None, vec![passage as f64, share, longest]);
         Self::Told(_) => ("told", None, Vec::new());
@@ -108,6 +109,7 @@ stored! {
             share,
             longest,
         };
+        ("endless-mean", None, &[average]) => Self::EndlessMean { average: average as usize };
         (code, None, &[passage]) => Self::NoPassage {
             passage: passage as usize,
             fault: PassageFault::of_code(code)?,

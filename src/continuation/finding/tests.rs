@@ -54,7 +54,8 @@ pub(crate) fn every_finding() -> Vec<Finding> {
             axis: 1,
             power: 2.5,
         }),
-        F::HeavyTail { .. } => Some(F::NegativeDensity { mass: 0.004 }),
+        F::HeavyTail { .. } => Some(F::EndlessMean { average: 1 }),
+        F::EndlessMean { .. } => Some(F::NegativeDensity { mass: 0.004 }),
         F::NegativeDensity { .. } => Some(F::NegativeCells {
             mass: 0.08,
             watched: 3e-8,

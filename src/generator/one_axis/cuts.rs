@@ -63,7 +63,7 @@ pub(super) fn cuts_toward(
 }
 
 /// Where drift or noise are not smooth, ascending.
-pub(super) fn surfaces(system: &dyn System) -> Vec<f64> {
+pub(in crate::generator) fn surfaces(system: &dyn System) -> Vec<f64> {
     let mut surfaces: Vec<f64> = system.facts().surfaces_on(0).collect();
     surfaces.sort_by(f64::total_cmp);
     surfaces

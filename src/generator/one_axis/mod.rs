@@ -19,8 +19,10 @@ pub use profile::profile;
 
 use crate::space::Axis;
 use crate::system::{LANES, System};
-use cuts::{cuts_toward, surfaces};
-use rule::{NODES, Rule, look};
+use cuts::cuts_toward;
+
+pub(super) use cuts::surfaces;
+pub(super) use rule::{NODES, Rule, legendre, look};
 
 /// Panels a cell; eight points on each of eight panels fill a batch.
 const PANELS: usize = LANES / NODES;

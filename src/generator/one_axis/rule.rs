@@ -5,18 +5,18 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use crate::system::{LANES, Lanes, System};
 
 /// Gauss-Legendre points on a panel.
-pub(super) const NODES: usize = 8;
+pub(in crate::generator) const NODES: usize = 8;
 
 /// Points and weights on [0, 1], and the integrals of the polynomial through values at the points from 0 to each of
 /// them.
-pub(super) struct Rule {
-    pub(super) points: [f64; NODES],
-    pub(super) weights: [f64; NODES],
-    pub(super) integrals: [[f64; NODES]; NODES],
+pub(in crate::generator) struct Rule {
+    pub(in crate::generator) points: [f64; NODES],
+    pub(in crate::generator) weights: [f64; NODES],
+    pub(in crate::generator) integrals: [[f64; NODES]; NODES],
 }
 
 impl Rule {
-    pub(super) fn new() -> Self {
+    pub(in crate::generator) fn new() -> Self {
         let (points, weights) = gauss();
         // Legendre polynomials shifted to [0, 1]; ∫₀ˣ P_n = (P_{n+1} - P_{n-1}) / (2 (2n+1)).
         let at = points.map(|x| legendre(2.0 * x - 1.0));
@@ -63,7 +63,7 @@ fn gauss() -> ([f64; NODES], [f64; NODES]) {
 }
 
 /// Drift and noise intensity at a batch of places.
-pub(super) fn look(system: &dyn System, places: &Lanes) -> (Lanes, Lanes) {
+pub(in crate::generator) fn look(system: &dyn System, places: &Lanes) -> (Lanes, Lanes) {
     let states = [*places];
     let mut drift = [[0.0; LANES]];
     system.drift(0.0, &states, &mut drift);
@@ -77,7 +77,7 @@ pub(super) fn look(system: &dyn System, places: &Lanes) -> (Lanes, Lanes) {
 }
 
 /// The Legendre polynomials P_0 to P_8 at a place between -1 and 1.
-pub(super) fn legendre(u: f64) -> [f64; NODES + 1] {
+pub(in crate::generator) fn legendre(u: f64) -> [f64; NODES + 1] {
     let mut values = [1.0; NODES + 1];
     values[1] = u;
     for n in 1..NODES {

@@ -15,6 +15,7 @@ mod largest_exponent;
 #[allow(clippy::print_stdout)]
 mod largest_exponent_tests;
 #[cfg(feature = "serde")]
+mod line_moments;
 mod memory;
 mod modes;
 mod one_axis;

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use super::GeneratorSource;
 use super::jumps::Kinked;
+use super::line_moments::put_on_line;
 use super::source::METHOD;
 use crate::continuation::{Finding, Sensitivity, Solution, SourceError};
 use crate::density::{EstimatedDensity, EstimatedMoments, Moments, NEGLIGIBLE, Observable};
-use crate::generator::{End, OneAxis, exponent_at, one_axis, profile};
+use crate::generator::{AxisEnd, End, OneAxis, Reach, exponent_at, one_axis, profile};
 use crate::method::MethodError;
 use crate::method::report::Reporter;
 use crate::method::structure::closed_ends;
@@ -68,6 +69,27 @@ fn between_ends(system: &dyn System, axis: &Axis, [low, high]: [bool; 2]) -> Opt
         return None;
     }
     one_axis(system, axis).filter(|found| found.error < LARGEST_ERROR)
+}
+
+/// How far the only axis of a system reaches, of which the steady state is known.
+pub(super) fn reach<'a>(
+    source: &'a GeneratorSource,
+    system: &'a dyn System,
+    found: &OneAxis,
+) -> Option<Reach<'a>> {
+    let axis = line(source.problem.space())?;
+    let closed = source.closed_ends.first().copied()?;
+    let end = |end: usize| match (found.ends[end], closed[end]) {
+        (Some(exponent), _) => AxisEnd::Natural(exponent),
+        (None, true) => AxisEnd::Wall,
+        (None, false) => AxisEnd::Open,
+    };
+    Some(Reach {
+        system,
+        axis,
+        ends: [end(0), end(1)],
+        mean: found.moments.0,
+    })
 }
 
 /// What the equations say of densities of a family with one axis: those that come back from a store know it as they did
@@ -157,6 +179,10 @@ pub(super) fn solution<'session>(
     }];
     let second: Vec<f64> = masses.iter().zip(&difference).map(|(m, d)| m + d).collect();
     moments.extend(maps.exact_moments(problem.space(), masses, Some(&second), &source.kinked)?);
+    let averaged = maps.averaged.iter().map(|map| &map.quantity);
+    if let Some(reach) = reach(source, system, found) {
+        put_on_line(&mut reporter, &reach, averaged, &mut moments)?;
+    }
     reporter.moments(&moments);
     Ok(Solution {
         sensitivity: Some(Box::new(QuadratureSensitivity { source, value })),

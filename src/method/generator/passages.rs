@@ -6,12 +6,12 @@ use super::basins::{MOVED, with_intervals};
 use crate::cancellation::Cancellation;
 use crate::continuation::{Finding, Measure, PassageFault, SolveReport, StateField};
 use crate::density::EstimatedDensity;
-use crate::generator::GeneratorOptions;
+use crate::generator::{GeneratorOptions, Reach};
 use crate::method::measures::{measures_of_passage, transition_measures};
 use crate::method::{GeneratorMethodOptions, MethodError, Problem};
 use crate::passage::{
     FieldTarget, KnownDensity, Passage, PassageError, PassageField, PassageMemory, Timed, field,
-    reactive, timed_from,
+    reactive, timed_from, timed_on_line, transitions_on_line,
 };
 use crate::space::CellSpace;
 use crate::stationary::generator::{RateError, RateOptions};
@@ -24,7 +24,8 @@ use crate::system::{
 const TOLERANCE: f64 = 1e-4;
 
 /// Adds the numbers of all passages at a value to a report, with findings where there are none. `density` is
-/// the steady state, with what is watched of it, in which regions may be found. `memory` is what the passages of
+/// the steady state, with what is watched of it, in which regions may be found. With a reach of one axis times are
+/// those of a line. `memory` is what the passages of
 /// another value have left, one a question.
 ///
 /// # Errors
@@ -32,7 +33,7 @@ const TOLERANCE: f64 = 1e-4;
 pub(super) fn add_passages(
     report: &mut SolveReport,
     (problem, value): (&Problem, f64),
-    system: &Arc<dyn System>,
+    (system, reach): (&Arc<dyn System>, Option<&Reach<'_>>),
     (density, watched): (Option<KnownDensity<'_>>, &[EstimatedDensity]),
     (options, memory): (&GeneratorMethodOptions, &[PassageMemory]),
     cancellation: &Cancellation,
@@ -43,6 +44,7 @@ pub(super) fn add_passages(
     }
     let asked = Asked {
         system,
+        reach,
         space: problem.space(),
         values: family.values_at(value)?,
         density,
@@ -99,6 +101,8 @@ pub(super) fn add_passages(
 /// What passages at a value are solved with.
 struct Asked<'a> {
     system: &'a Arc<dyn System>,
+    /// Of a system with one axis, whose passages are those of a line.
+    reach: Option<&'a Reach<'a>>,
     space: &'a CellSpace,
     values: ParameterValues,
     density: Option<KnownDensity<'a>>,
@@ -113,6 +117,10 @@ type Answer<T> = Result<Result<T, PassageFault>, MethodError>;
 impl Asked<'_> {
     fn numbers(&self, question: &PassageQuestion, memory: &PassageMemory) -> Answer<Vec<Measure>> {
         let passage = Passage::bind(question, &self.values)?;
+        let on_line = self.reach.and_then(|reach| timed_on_line(reach, &passage));
+        if let Some(found) = on_line {
+            return or_fault(found.map(|timed| measures(question, &timed)));
+        }
         let settings = (&self.generator, &self.rates);
         let cells = (self.system, self.space);
         let found = timed_from(
@@ -162,11 +170,28 @@ impl Asked<'_> {
             exits: vec![bind(from)?, bind(&question.until)?],
             part: None,
         };
+        let (wants_fields, regions) = (
+            question
+                .fields
+                .iter()
+                .any(|wanted| wanted.kind.is_reactive()),
+            [&target.exits[0], &target.exits[1]],
+        );
+        let on_line = self
+            .reach
+            .and_then(|reach| transitions_on_line(reach, regions));
+        let on_line = match on_line {
+            Some(Ok(numbers)) if !wants_fields => {
+                return Ok(Ok((transition_measures(question, numbers), Vec::new())));
+            }
+            Some(Err(error)) => return or_fault(Err(error)),
+            other => other.and_then(Result::ok),
+        };
         let settings = (&self.generator, &self.rates);
         let cells = (self.system, self.space);
         let found = reactive(cells, &target, density, settings, self.cancellation);
         or_fault(found.map(|found| {
-            let numbers = [found.flux, found.rate, found.duration];
+            let numbers = on_line.unwrap_or([found.flux, found.rate, found.duration]);
             let fields = question.fields.iter().filter_map(|wanted| {
                 let field = match (wanted.kind, wanted.axis) {
                     (FieldKind::ReactiveDensity, _) => Some(&found.density),

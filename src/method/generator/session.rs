@@ -22,7 +22,7 @@ use super::unknowns::distance;
 use crate::cancellation::Cancellation;
 use crate::continuation::{Solution, SolveReport};
 use crate::density::EstimatedDensity;
-use crate::generator::LineRates;
+use crate::generator::{DEPTH, LineRates, PLACES, Reach};
 use crate::method::MethodError;
 use crate::method::neighbours::Neighbours;
 use crate::method::watched::planes;
@@ -102,7 +102,8 @@ impl GeneratorSession {
             let Solution {
                 report, densities, ..
             } = &mut solution;
-            self.add_asked(report, value, &system, (known, densities))?;
+            let reach = one_axis::reach(&self.source, system.as_ref(), &found);
+            self.add_asked(report, value, (&system, reach), (known, densities))?;
             return Ok(solution);
         }
         let nearest = self.trails.nearest(value).cloned();
@@ -121,7 +122,7 @@ impl GeneratorSession {
         let Solution {
             report, densities, ..
         } = &mut solution;
-        self.add_asked(report, value, &solved.system, (known, densities))?;
+        self.add_asked(report, value, (&solved.system, None), (known, densities))?;
         let Some(trail) = trail else {
             return Ok(solution);
         };
@@ -139,12 +140,12 @@ impl GeneratorSession {
 
     /// Adds what is asked of first passages, slow modes and spectra at a value, unless densities are all that is asked
     /// for; `known` are the unknowns of the steady state, and by how much those of another discretisation differ;
-    /// `watched` are its densities.
+    /// `watched` are its densities. With a reach of one axis they are those of a line.
     fn add_asked(
         &self,
         report: &mut SolveReport,
         value: f64,
-        system: &Arc<dyn System>,
+        (system, reach): (&Arc<dyn System>, Option<Reach<'_>>),
         (known, watched): (Option<Known<'_>>, &[EstimatedDensity]),
     ) -> Result<(), MethodError> {
         // Questions are asked in coordinates that stay.
@@ -162,7 +163,7 @@ impl GeneratorSession {
         add_passages(
             report,
             asked,
-            system,
+            (system, reach.as_ref()),
             (density, watched),
             (options, &self.passages),
             cancellation,
@@ -170,8 +171,13 @@ impl GeneratorSession {
         let at = (system, value);
         add_largest_exponent(report, &self.source, at, known, cancellation)?;
         let unknowns = known.map(|(unknowns, _)| unknowns);
-        add_slow_modes(report, &self.source, at, density, cancellation)?;
-        add_spectra(report, &self.source, at, unknowns, cancellation)
+        let asks = &problem.family().questions;
+        let is_line_asked = asks.spectrum.is_some() || asks.asks_for_modes();
+        let reach = reach.filter(|_| is_line_asked && !problem.subject().measures.is_empty());
+        let line = reach.and_then(|reach| reach.line(PLACES, DEPTH, &[]));
+        let line = line.as_ref();
+        add_slow_modes(report, &self.source, at, (density, line), cancellation)?;
+        add_spectra(report, &self.source, at, (unknowns, line), cancellation)
     }
 
     /// Factorises ahead of a value in place of at it, where the sweep goes on: values on either side of the factorised

@@ -5,13 +5,14 @@ use std::sync::Arc;
 use super::GeneratorSource;
 use crate::cancellation::Cancellation;
 use crate::continuation::{Finding, PassageFault, SolveReport};
-use crate::generator::{GeneratorOptions, levels};
+use crate::generator::{GeneratorOptions, Line, levels};
 use crate::method::MethodError;
 use crate::method::measures::{formula_measures, measures_of_slow_modes, switching_measures};
 use crate::passage::KnownDensity;
 use crate::space::Axis;
 use crate::spectrum::{
-    EscapeFormulas, SlowModes, SpectrumError, Steady, escape_formulas, slow_modes, switching,
+    EscapeFormulas, SlowModes, SpectrumError, Steady, escape_formulas, slow_modes,
+    slow_modes_on_line, switching,
 };
 use crate::stationary::generator::{RateError, RateOptions};
 use crate::system::{BoundQuantity, DampedParticle, PassageStart, Region, System};
@@ -21,7 +22,7 @@ use crate::system::{BoundQuantity, DampedParticle, PassageStart, Region, System}
 const TOLERANCE: f64 = 1e-11;
 
 /// Adds the numbers of the slow modes to a report, and the rates between states that passages ask for; `density` is the
-/// steady state, where there is one.
+/// steady state, where there is one, and `line` what its motion is solved on where there is one axis.
 ///
 /// # Errors
 /// [`MethodError::Cancelled`], and errors of values that the family does not have.
@@ -29,18 +30,12 @@ pub(super) fn add_slow_modes(
     report: &mut SolveReport,
     source: &GeneratorSource,
     (system, value): (&Arc<dyn System>, f64),
-    density: Option<KnownDensity<'_>>,
+    (density, line): (Option<KnownDensity<'_>>, Option<&Line>),
     cancellation: &Cancellation,
 ) -> Result<(), MethodError> {
     let (subject, space) = (source.problem.subject(), source.problem.space());
     let wanted = subject.family.questions.slow_modes;
-    let switches = subject
-        .family
-        .questions
-        .passages
-        .iter()
-        .any(|one| one.switching);
-    if (wanted == 0 && !switches) || subject.measures.is_empty() {
+    if !subject.family.questions.asks_for_modes() || subject.measures.is_empty() {
         return Ok(());
     }
     let rates = RateOptions {
@@ -60,7 +55,9 @@ pub(super) fn add_slow_modes(
         let settings = (&generator, &rates);
         slow_modes(system, space, wanted, steady, settings, cancellation)
     };
-    let found = match density.map(solve) {
+    let on_line = line.map(|line| slow_modes_on_line(line, wanted, &space.axes()[0]));
+    let found = match density.filter(|_| on_line.is_none()).map(solve) {
+        _ if on_line.is_some() => on_line,
         Some(Ok(found)) => Some(found),
         Some(Err(SpectrumError::Rate(RateError::Cancelled(cancelled)))) => {
             return Err(cancelled.into());

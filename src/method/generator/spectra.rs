@@ -5,11 +5,12 @@ use std::sync::Arc;
 use super::GeneratorSource;
 use crate::cancellation::Cancellation;
 use crate::continuation::{Finding, Fluctuations, SolveReport};
-use crate::generator::GeneratorOptions;
+use crate::generator::{GeneratorOptions, Line};
 use crate::method::measures::measures_of_spectrum;
 use crate::method::{MethodError, Problem};
 use crate::spectrum::{
-    PowerQuestion, Spectrum, SpectrumError, StateFunction, Steady, power_spectra, rate_of_change,
+    PowerQuestion, Spectrum, SpectrumError, StateFunction, Steady, power_spectra,
+    power_spectra_on_line, rate_of_change,
 };
 use crate::stationary::generator::{RateError, RateOptions};
 use crate::system::{BoundQuantity, Fluctuating, SpectrumQuestion, System};
@@ -23,7 +24,8 @@ const HIGHEST: f64 = 6.0;
 /// A function of the state with values of all parameters.
 type BoundFunction<'a> = Box<dyn Fn(&[f64]) -> f64 + Sync + 'a>;
 
-/// Adds the spectra that a family asks for to a report; `unknowns` are those of the steady state, where there is one.
+/// Adds the spectra that a family asks for to a report; `unknowns` are those of the steady state, where there is one,
+/// and `line` what its motion is solved on where there is one axis.
 ///
 /// # Errors
 /// [`MethodError::Cancelled`].
@@ -31,7 +33,7 @@ pub(super) fn add_spectra(
     report: &mut SolveReport,
     source: &GeneratorSource,
     (system, value): (&Arc<dyn System>, f64),
-    unknowns: Option<&[f64]>,
+    (unknowns, line): (Option<&[f64]>, Option<&Line>),
     cancellation: &Cancellation,
 ) -> Result<(), MethodError> {
     let (subject, space) = (source.problem.subject(), source.problem.space());
@@ -77,7 +79,9 @@ pub(super) fn add_spectra(
             cancellation,
         )
     };
-    let found = match unknowns.map(solve) {
+    let on_line = line.and_then(|line| power_spectra_on_line(line, &asked));
+    let found = match unknowns.filter(|_| line.is_none()).map(solve) {
+        _ if on_line.is_some() => on_line.unwrap_or_default(),
         Some(Ok(found)) => found.spectra,
         Some(Err(SpectrumError::Rate(RateError::Cancelled(cancelled)))) => {
             return Err(cancelled.into());

@@ -1,0 +1,144 @@
+//! Eigenvalues and eigenfunctions of a chain from the vectors f, L⁻¹f, L⁻²f and so on: the slowest ones soon have all
+//! their digits.
+
+use nalgebra::{DMatrix, SymmetricEigen};
+
+use super::{Chain, solve::Ending};
+
+/// A vector that is shorter than this beside the others, relative to its length before, adds nothing.
+const NOTHING: f64 = 1e-10;
+
+/// What the slow part of a chain does: its eigenvalues, and functions that are one in the mean square each.
+pub(crate) struct Reduced {
+    /// Decay rates in ascending order.
+    pub(crate) rates: Vec<f64>,
+    /// Eigenfunctions at the places.
+    pub(crate) functions: Vec<Vec<f64>>,
+}
+
+/// An orthonormal basis, and L⁻¹ in it.
+pub(crate) struct Krylov {
+    basis: Vec<Vec<f64>>,
+    inverse: DMatrix<f64>,
+}
+
+impl Chain {
+    /// From functions without a mean, of a process that never ends, by so many vectors each.
+    pub(crate) fn krylov(&self, starts: &[Vec<f64>], vectors: usize) -> Krylov {
+        // Where half of the mass is on either side nothing is the difference of large numbers.
+        let middle = self.middle();
+        let ends: Vec<bool> = (0..self.masses.len())
+            .map(|place| place == middle)
+            .collect();
+        let ending = self.until(&ends);
+        let whole: f64 = self.masses.iter().sum();
+        let answer = |function: &[f64]| {
+            let mut found = ending.solve(&self.weighted(function), |_| 0.0);
+            let mean = Self::over(&self.masses, &found) / whole;
+            found.iter_mut().for_each(|value| *value -= mean);
+            found
+        };
+        Krylov::new(self, answer, starts, vectors)
+    }
+}
+
+impl Ending<'_> {
+    /// From functions that are zero where the process ends, by so many vectors each.
+    pub(crate) fn krylov(&self, starts: &[Vec<f64>], vectors: usize) -> Krylov {
+        let answer = |function: &[f64]| self.solve(&self.chain.weighted(function), |_| 0.0);
+        Krylov::new(self.chain, answer, starts, vectors)
+    }
+}
+
+impl Krylov {
+    fn new(
+        chain: &Chain,
+        answer: impl Fn(&[f64]) -> Vec<f64>,
+        starts: &[Vec<f64>],
+        vectors: usize,
+    ) -> Self {
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        let mut images: Vec<Vec<f64>> = Vec::new();
+        let mut next: Vec<Vec<f64>> = starts.to_vec();
+        for _ in 0..vectors {
+            let mut more = Vec::new();
+            for vector in next {
+                if let Some(vector) = beside(chain, &basis, vector) {
+                    let image = answer(&vector);
+                    more.push(image.clone());
+                    images.push(image);
+                    basis.push(vector);
+                }
+            }
+            next = more;
+        }
+        let weighted: Vec<Vec<f64>> = basis.iter().map(|vector| chain.weighted(vector)).collect();
+        let overlap = |row: usize, column: usize| Chain::over(&weighted[row], &images[column]);
+        let size = basis.len();
+        let inverse = DMatrix::from_fn(size, size, |row, column| {
+            0.5 * (overlap(row, column) + overlap(column, row))
+        });
+        Self { basis, inverse }
+    }
+
+    /// What the first `share` of the vectors say, with functions or without.
+    pub(crate) fn reduced(&self, share: f64, with_functions: bool) -> Reduced {
+        let size = (share * self.basis.len() as f64).ceil() as usize;
+        let part = self.inverse.view((0, 0), (size, size)).into_owned();
+        if !part.iter().all(|value| value.is_finite()) {
+            return Reduced {
+                rates: Vec::new(),
+                functions: Vec::new(),
+            };
+        }
+        let eigen = SymmetricEigen::new(part);
+        let mut order: Vec<usize> = (0..size)
+            .filter(|&one| eigen.eigenvalues[one] > 0.0)
+            .collect();
+        order.sort_by(|&one, &other| eigen.eigenvalues[other].total_cmp(&eigen.eigenvalues[one]));
+        let function = |&one: &usize| {
+            let mut sum = vec![0.0; self.basis[0].len()];
+            for (vector, weight) in self.basis.iter().zip(eigen.eigenvectors.column(one).iter()) {
+                sum.iter_mut()
+                    .zip(vector)
+                    .for_each(|(sum, value)| *sum += weight * value);
+            }
+            sum
+        };
+        Reduced {
+            rates: order
+                .iter()
+                .map(|&one| eigen.eigenvalues[one].recip())
+                .collect(),
+            functions: match with_functions {
+                true => order.iter().map(function).collect(),
+                false => Vec::new(),
+            },
+        }
+    }
+}
+
+/// What of a vector is beside others, of length one; `None` where that is nothing.
+fn beside(chain: &Chain, basis: &[Vec<f64>], mut vector: Vec<f64>) -> Option<Vec<f64>> {
+    let length = |vector: &[f64]| Chain::over(&chain.weighted(vector), vector).sqrt();
+    let before = length(&vector);
+    for _ in 0..2 {
+        let weighted = chain.weighted(&vector);
+        let overlaps: Vec<f64> = basis
+            .iter()
+            .map(|known| Chain::over(&weighted, known))
+            .collect();
+        for (known, overlap) in basis.iter().zip(overlaps) {
+            vector
+                .iter_mut()
+                .zip(known)
+                .for_each(|(own, known)| *own -= overlap * known);
+        }
+    }
+    let after = length(&vector);
+    if !(after.is_finite() && after > NOTHING * before) {
+        return None;
+    }
+    vector.iter_mut().for_each(|value| *value /= after);
+    Some(vector)
+}
