@@ -4,7 +4,7 @@ use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 use super::integrator::Position;
 use crate::space::CellSpace;
-use crate::system::System;
+use crate::system::{LANES, Lanes, System};
 
 /// Share of a cell's width that a coordinate is moved by for a difference quotient.
 const SHARE: f64 = 1e-3;
@@ -44,73 +44,137 @@ pub(super) fn local_rates(
 
 /// Rates at a state, from differences over a thousandth of a length of each axis; `None` next to a switching surface,
 /// and where the drift is not finite.
-pub(super) fn rates_of_lengths(
+fn rates_of_lengths(
     system: &dyn System,
     width: &dyn Fn(usize) -> f64,
     state: &[f64],
     positions: &[Position],
 ) -> Option<LocalRates> {
-    let dimension = state.len();
-    for surface in &system.facts().switching_surfaces {
-        if (state[surface.axis] - surface.at).abs() <= 2.0 * SHARE * width(surface.axis) {
-            return None;
-        }
-    }
-    let mut jacobian = DMatrix::zeros(dimension, dimension);
-    for axis in 0..dimension {
-        let step = SHARE * width(axis);
-        let at = |by: f64| {
-            let mut state = state.to_vec();
-            state[axis] += by;
-            system.drift_at(0.0, &state)
-        };
-        let (up, down) = (at(step), at(-step));
-        for row in 0..dimension {
-            jacobian[(row, axis)] = (up[row] - down[row]) / (2.0 * step);
-        }
-    }
-    if !jacobian.iter().all(|entry| entry.is_finite()) {
-        return None;
-    }
-    let is_position = |axis: &usize| positions.iter().any(|one| one.axis == *axis);
-    let rest: Vec<usize> = (0..dimension).filter(|axis| !is_position(axis)).collect();
-    let of_rest = jacobian.select_rows(&rest).select_columns(&rest);
-    let of = |matrix| Some(Schur::try_new(matrix, 1e-12, 1000)?.complex_eigenvalues());
-    let largest = |of: &DVector<Complex<f64>>| of.iter().map(|one| one.norm()).fold(0.0, f64::max);
-    let kicks = noise_rate(system, state, width);
-    let eigenvalues = of(jacobian)?;
-    let fastest = largest(&eigenvalues).max(kicks);
-    let split = match positions.is_empty() {
-        true => fastest,
-        false => (largest(&eigenvalues) / LONGER)
-            .max(largest(&of(of_rest)?))
-            .max(kicks),
-    };
-    let oscillating = eigenvalues.iter().filter(|value| value.im > 0.0);
-    let pair = oscillating.max_by(|a, b| a.im.total_cmp(&b.im));
-    Some(LocalRates {
-        fastest,
-        damping: pair.map(|value| -2.0 * value.re),
-        split,
-    })
+    let lanes = |value: f64| [value; LANES];
+    let states: Vec<Lanes> = state.iter().copied().map(lanes).collect();
+    let lengths: Vec<Lanes> = (0..state.len()).map(|axis| lanes(width(axis))).collect();
+    let around = Around::new(system, &states, &lengths);
+    around.rates(0, positions)
 }
 
-/// Largest 4 b'² over the noises.
-fn noise_rate(system: &dyn System, state: &[f64], width: &dyn Fn(usize) -> f64) -> f64 {
-    let rates = system.noises().iter().map(|noise| {
-        if noise.additive().is_some() {
-            return 0.0;
+/// What differences over a thousandth of a length of each axis say of the states of a batch.
+pub(super) struct Around {
+    /// `slopes[axis][row]`: derivatives of the drift along `row` by the coordinate along `axis`.
+    slopes: Vec<Vec<Lanes>>,
+    /// Largest 4 b'² over the noises.
+    kicks: Lanes,
+    /// Whether a state is next to a switching surface.
+    beside_surface: [bool; LANES],
+}
+
+impl Around {
+    /// Of states with a length along each axis, `[axis][lane]` both.
+    pub(super) fn new(system: &dyn System, states: &[Lanes], lengths: &[Lanes]) -> Self {
+        let mut beside_surface = [false; LANES];
+        for surface in &system.facts().switching_surfaces {
+            let (at, length) = (&states[surface.axis], &lengths[surface.axis]);
+            for (lane, beside) in beside_surface.iter_mut().enumerate() {
+                *beside |= (at[lane] - surface.at).abs() <= 2.0 * SHARE * length[lane];
+            }
         }
-        let step = SHARE * width(noise.axis);
-        let at = |by: f64| {
-            let mut state = state.to_vec();
-            state[noise.axis] += by;
-            noise.at(0.0, &state)
+        let mut states = states.to_vec();
+        let slopes = (0..states.len()).map(|axis| {
+            let mut drift = [
+                vec![[0.0; LANES]; states.len()],
+                vec![[0.0; LANES]; states.len()],
+            ];
+            moved(&mut states, axis, &lengths[axis], |side, states| {
+                system.drift(0.0, states, &mut drift[side]);
+            });
+            let [up, down] = drift;
+            let rows = up.into_iter().zip(down);
+            rows.map(|(up, down)| slope(&up, &down, &lengths[axis]))
+                .collect()
+        });
+        let slopes = slopes.collect();
+        let mut kicks = [0.0_f64; LANES];
+        for noise in system
+            .noises()
+            .iter()
+            .filter(|noise| noise.additive().is_none())
+        {
+            let mut amplitudes = [[0.0; LANES]; 2];
+            moved(
+                &mut states,
+                noise.axis,
+                &lengths[noise.axis],
+                |side, states| {
+                    amplitudes[side] = noise.amplitudes(0.0, states);
+                },
+            );
+            let [up, down] = &amplitudes;
+            for (kicks, slope) in kicks.iter_mut().zip(slope(up, down, &lengths[noise.axis])) {
+                let rate = KICKS * slope * slope;
+                if rate.is_finite() {
+                    *kicks = kicks.max(rate);
+                }
+            }
+        }
+        Self {
+            slopes,
+            kicks,
+            beside_surface,
+        }
+    }
+
+    /// Rates of one of the states; `None` next to a switching surface, and where the drift is not finite.
+    pub(super) fn rates(&self, lane: usize, positions: &[Position]) -> Option<LocalRates> {
+        let dimension = self.slopes.len();
+        let entry = |row: usize, axis: usize| self.slopes[axis][row][lane];
+        let jacobian = DMatrix::from_fn(dimension, dimension, entry);
+        if self.beside_surface[lane] || !jacobian.iter().all(|entry| entry.is_finite()) {
+            return None;
+        }
+        let is_position = |axis: &usize| positions.iter().any(|one| one.axis == *axis);
+        let rest: Vec<usize> = (0..dimension).filter(|axis| !is_position(axis)).collect();
+        let of_rest = jacobian.select_rows(&rest).select_columns(&rest);
+        let of = |matrix| Some(Schur::try_new(matrix, 1e-12, 1000)?.complex_eigenvalues());
+        let largest =
+            |of: &DVector<Complex<f64>>| of.iter().map(|one| one.norm()).fold(0.0, f64::max);
+        let kicks = self.kicks[lane];
+        let eigenvalues = of(jacobian)?;
+        let fastest = largest(&eigenvalues).max(kicks);
+        let split = match positions.is_empty() {
+            true => fastest,
+            false => (largest(&eigenvalues) / LONGER)
+                .max(largest(&of(of_rest)?))
+                .max(kicks),
         };
-        let slope = (at(step) - at(-step)) / (2.0 * step);
-        KICKS * slope * slope
-    });
-    rates.filter(|rate| rate.is_finite()).fold(0.0, f64::max)
+        let oscillating = eigenvalues.iter().filter(|value| value.im > 0.0);
+        let pair = oscillating.max_by(|a, b| a.im.total_cmp(&b.im));
+        Some(LocalRates {
+            fastest,
+            damping: pair.map(|value| -2.0 * value.re),
+            split,
+        })
+    }
+}
+
+/// Looks at the states moved up along an axis by a share of a length, then at them moved down.
+fn moved(
+    states: &mut [Lanes],
+    axis: usize,
+    lengths: &Lanes,
+    mut look: impl FnMut(usize, &[Lanes]),
+) {
+    let own = states[axis];
+    for (side, sign) in [1.0, -1.0].into_iter().enumerate() {
+        for (lane, moved) in states[axis].iter_mut().enumerate() {
+            *moved = own[lane] + sign * (SHARE * lengths[lane]);
+        }
+        look(side, states);
+    }
+    states[axis] = own;
+}
+
+/// Slopes from values at states that were moved up and down.
+fn slope(up: &Lanes, down: &Lanes, lengths: &Lanes) -> Lanes {
+    std::array::from_fn(|lane| (up[lane] - down[lane]) / (2.0 * (SHARE * lengths[lane])))
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::Integrator;
 use super::integrator::{Position, Stepper, positions};
-use super::jacobian::rates_of_lengths;
+use super::jacobian::Around;
 use super::random::{NormalStream, StreamKey, mix, unit};
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::system::{LANES, Lanes, System};
@@ -228,16 +228,21 @@ impl<'a> Batch<'a> {
     }
 
     /// The rate at which drift or noise crosses such lengths, which matters where the drift does not change.
-    fn crossing(&self, across: &[f64], state: &[f64], drift: &[f64]) -> f64 {
-        let mut rate: f64 = 0.0;
+    fn crossing(&self, across: &[f64], drift: &[Lanes]) -> Lanes {
+        let mut rates: Lanes = [0.0; LANES];
         for (drift, length) in drift.iter().zip(across) {
-            rate = rate.max(drift.abs() / length);
+            for (rate, drift) in rates.iter_mut().zip(drift) {
+                *rate = rate.max(drift.abs() / length);
+            }
         }
         for noise in self.system.noises() {
-            let share = noise.at(0.0, state) / across[noise.axis];
-            rate = rate.max(0.5 * share * share);
+            let amplitudes = noise.amplitudes(0.0, &self.states);
+            for (rate, amplitude) in rates.iter_mut().zip(amplitudes) {
+                let share = amplitude / across[noise.axis];
+                *rate = rate.max(0.5 * share * share);
+            }
         }
-        rate
+        rates
     }
 
     /// Takes some steps that suit the fastest, and says their pace; none where one from the middle, or every one, goes
@@ -264,32 +269,39 @@ impl<'a> Batch<'a> {
     fn rates(&mut self, too_fast: f64) -> Option<[f64; 2]> {
         let mut rates = Vec::new();
         let across: Vec<f64> = self.across();
+        let mut drift = vec![[0.0; LANES]; self.states.len()];
+        self.system.drift(0.0, &self.states, &mut drift);
+        let crossing = self.crossing(&across, &drift);
+        let lengths: Vec<Lanes> = (self.states.iter().zip(&self.lengths))
+            .map(|(lanes, length)| lanes.map(|at| SHARE * length.max(at.abs())))
+            .collect();
+        let around = Around::new(self.system, &self.states, &lengths);
+        let mut beside: Option<Around> = None;
         for lane in 0..LANES {
-            let state: Vec<f64> = self.states.iter().map(|lanes| lanes[lane]).collect();
-            let is_finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
-            let drift = self.system.drift_at(0.0, &state);
-            self.stays[lane] &= is_finite(&state) && is_finite(&drift);
+            let is_finite = |all: &[Lanes]| all.iter().all(|lanes| lanes[lane].is_finite());
+            self.stays[lane] &= is_finite(&self.states) && is_finite(&drift);
             if !self.stays[lane] {
                 continue;
             }
-            let length = |axis: usize| SHARE * self.lengths[axis].max(state[axis].abs());
-            let rates_at =
-                |state: &[f64]| rates_of_lengths(self.system, &length, state, &self.positions);
             // Where a switching surface is, the rates are those beside it.
-            let beside = || {
-                let places = state.iter().enumerate();
-                let beside: Vec<f64> = places
-                    .map(|(axis, at)| at + BESIDE * length(axis))
-                    .collect();
-                rates_at(&beside)
+            let mut rates_beside = || {
+                let around = beside.get_or_insert_with(|| {
+                    let places = self.states.iter().zip(&lengths);
+                    let place = |(at, by): (&Lanes, &Lanes)| {
+                        std::array::from_fn(|lane| at[lane] + BESIDE * by[lane])
+                    };
+                    let states: Vec<Lanes> = places.map(place).collect();
+                    Around::new(self.system, &states, &lengths)
+                });
+                around.rates(lane, &self.positions)
             };
-            let rate = rates_at(&state)
-                .or_else(beside)
+            let rate = (around.rates(lane, &self.positions))
+                .or_else(&mut rates_beside)
                 .map_or(0.0, |rate| rate.fastest);
             if rate > too_fast {
                 self.stays[lane] = false;
             } else {
-                rates.push(rate.max(self.crossing(&across, &state, &drift)));
+                rates.push(rate.max(crossing[lane]));
             }
         }
         let is_lost = self.is_in_middle && self.stays.contains(&false);
