@@ -1,4 +1,7 @@
-//! Ticks at round numbers (1, 2 or 5 times a power of ten), with labels that share their decimals.
+//! Ticks at round numbers (1, 2 or 5 times a power of ten), with labels that share their decimals, and at parts of π on
+//! the range of an angle.
+
+use std::f64::consts::PI;
 
 use super::symbols;
 
@@ -24,6 +27,9 @@ pub(super) struct Ticks {
 
 /// At most `most` (at least 2) labelled ticks in `from..=to`, `from < to`.
 pub(super) fn ticks(from: f64, to: f64, most: usize) -> Ticks {
+    if let Some(ticks) = parts_of_pi(from, to, most.max(2)) {
+        return ticks;
+    }
     let (step, parts) = step(from, to, most.max(2));
     let exponent = common_exponent(from, to, step);
     let scale = 10f64.powi(exponent);
@@ -53,6 +59,53 @@ pub(super) fn ticks(from: f64, to: f64, most: usize) -> Ticks {
         major,
         minor,
         exponent,
+    }
+}
+
+/// Ticks at π, π/2 or π/4, of an axis that goes around once or a few times from one multiple of π to another: that of
+/// an angle.
+fn parts_of_pi(from: f64, to: f64, most: usize) -> Option<Ticks> {
+    let [low, high] = [from, to].map(|end| (end / PI).round());
+    let is_whole = |end: f64, multiple: f64| (end - multiple * PI).abs() <= 1e-12 * (to - from);
+    let turns = (high - low) / 2.0;
+    if !is_whole(from, low) || !is_whole(to, high) || turns.fract() != 0.0 || turns > 4.0 {
+        return None;
+    }
+    let (low, high) = (low as i64, high as i64);
+    let cuts = [4, 2, 1]
+        .into_iter()
+        .find(|cuts| (high - low) * cuts < most as i64);
+    let cuts = cuts.filter(|_| turns > 0.0)?;
+    let major = (low * cuts..=high * cuts).map(|part| Tick {
+        value: part as f64 * PI / cuts as f64,
+        label: part_of_pi(part, cuts),
+    });
+    // Small ticks stand at sixths, as degrees are counted, or at halves of what is labelled.
+    let small = if cuts == 4 { 2 } else { 3 };
+    let minor = (low * cuts * small..=high * cuts * small).filter(|part| part % small != 0);
+    Some(Ticks {
+        major: major.collect(),
+        minor: minor
+            .map(|part| part as f64 * PI / (cuts * small) as f64)
+            .collect(),
+        exponent: 0,
+    })
+}
+
+/// π times a fraction, in lowest terms.
+fn part_of_pi(part: i64, cuts: i64) -> String {
+    let shared = (1..=cuts).rev().find(|by| part % by == 0 && cuts % by == 0);
+    let shared = shared.unwrap_or(1);
+    let (part, cuts) = (part / shared, cuts / shared);
+    let size = match part.abs() {
+        0 => return "0".to_owned(),
+        1 => "π".to_owned(),
+        more => format!("{more}π"),
+    };
+    let sign = if part < 0 { "\u{2212}" } else { "" };
+    match cuts {
+        1 => format!("{sign}{size}"),
+        _ => format!("{sign}{size}/{cuts}"),
     }
 }
 
@@ -136,6 +189,18 @@ mod tests {
     fn labels(from: f64, to: f64, most: usize) -> Vec<String> {
         let major = ticks(from, to, most).major.into_iter();
         major.map(|tick| tick.label).collect()
+    }
+
+    #[test]
+    fn an_angle_has_parts_of_pi() {
+        let whole = std::f64::consts::PI;
+        assert_eq!(labels(-whole, whole, 7), ["−π", "−π/2", "0", "π/2", "π"]);
+        assert_eq!(labels(0.0, 2.0 * whole, 9).len(), 9);
+        assert_eq!(labels(0.0, 2.0 * whole, 9)[3], "3π/4");
+        assert_eq!(labels(-whole, whole, 3), ["−π", "0", "π"]);
+        // Half a turn is no angle's range, and too few labels for parts of π are round numbers.
+        assert_eq!(labels(0.0, whole, 7), labels(0.0, 3.1, 7));
+        assert_eq!(labels(-whole, whole, 2), labels(-3.1, 3.1, 2));
     }
 
     #[test]
