@@ -14,8 +14,8 @@ mod largest_exponent;
 #[cfg(test)]
 #[allow(clippy::print_stdout)]
 mod largest_exponent_tests;
-#[cfg(feature = "serde")]
 mod line_moments;
+#[cfg(feature = "serde")]
 mod memory;
 mod modes;
 mod one_axis;
