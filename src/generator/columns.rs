@@ -152,10 +152,10 @@ impl LineRates {
 
     /// Number of cells on the lines through a cell that its column reaches.
     fn entries_of_star(&self, place: &Coordinates) -> usize {
-        let along = |(geometry, &position): (&AxisGeometry, &usize)| {
-            position.min(geometry.reach) + (geometry.count() - 1 - position).min(geometry.reach)
-        };
-        1 + self.axes.iter().zip(place).map(along).sum::<usize>()
+        let axes = 0..self.axes.len();
+        1 + axes
+            .map(|axis| self.reached(place, axis).len() - 1)
+            .sum::<usize>()
     }
 
     /// Positions along an axis that a column of the matrix may reach.
@@ -212,8 +212,8 @@ impl LineRates {
         // Below the diagonal the rows rise with the first axis first, above it with the last axis first.
         for axis in 0..self.axes.len() {
             let (stride, position) = (self.strides[axis], place[axis]);
-            let lowest = position.saturating_sub(self.axes[axis].reach);
-            escape += self.each_rate(place, axis, lowest..position, |to, entry| {
+            let below = self.reached(place, axis).start..position;
+            escape += self.each_rate(place, axis, below, |to, entry| {
                 put(cell - (position - to) * stride, entry, &mut next);
             });
         }
@@ -221,8 +221,8 @@ impl LineRates {
         next += 1;
         for axis in (0..self.axes.len()).rev() {
             let (stride, position) = (self.strides[axis], place[axis]);
-            let end = (position + self.axes[axis].reach + 1).min(self.axes[axis].count());
-            self.each_rate(place, axis, position + 1..end, |to, entry| {
+            let above = position + 1..self.reached(place, axis).end;
+            self.each_rate(place, axis, above, |to, entry| {
                 put(cell + (to - position) * stride, entry, &mut next);
             });
         }

@@ -53,13 +53,13 @@ pub(crate) use absorbing::{
 };
 pub use assemble::assemble;
 pub(crate) use assemble::{assemble_damped, assemble_lines};
-pub(crate) use chain::{Chain, DEPTH, Ending as AxisEnd, Line, PLACES, Reach, Reduced};
+pub(crate) use chain::{AxisEnd, Chain, MESH_DEPTH, MESH_PLACES, Mesh, Reach, Reduced};
 pub(crate) use columns::LineRates;
 pub use derivative::assemble_derivative;
 pub use grading::automatic_grading;
 pub(crate) use masses::summed_to_walls;
 pub use masses::{cell_masses, unknown_moments};
-pub(crate) use one_axis::{End, exponent_at};
+pub(crate) use one_axis::{End, NODES, exponent_at};
 pub use one_axis::{OneAxis, one_axis, profile};
 pub(crate) use resolution::{Resolution, resolution};
 pub use scheme::AdvectiveScheme;

@@ -2,7 +2,7 @@
 //! border, on which mean times are exact but for the quadrature.
 
 use super::{Passage, PassageError, Start, Timed, WithError};
-use crate::generator::{Chain, DEPTH, Line, PLACES, Reach, Reduced};
+use crate::generator::{Chain, MESH_DEPTH, MESH_PLACES, Mesh, Reach, Reduced};
 use crate::stationary::generator::AbsorbingWork;
 use crate::system::{BoundQuantity, LANES};
 
@@ -17,7 +17,7 @@ const HALVINGS: usize = 200;
 
 /// A line with a place on every border of some regions.
 pub(crate) struct Bordered {
-    line: Line,
+    line: Mesh,
 }
 
 /// Where a region is on a line, element by element.
@@ -27,7 +27,7 @@ impl Bordered {
     /// The line of a system with places on the borders of regions (negative inside) and at `more` places; `None` where
     /// it has no end.
     fn new(reach: &Reach<'_>, regions: &[&BoundQuantity], more: &[f64]) -> Option<Self> {
-        let rough = reach.line(PLACES, DEPTH, more)?;
+        let rough = reach.mesh(MESH_PLACES, MESH_DEPTH, more)?;
         let mut breaks = more.to_vec();
         for region in regions {
             let inside: Vec<bool> = is_inside(region, &rough.places);
@@ -37,7 +37,7 @@ impl Bordered {
                 }
             }
         }
-        let line = reach.line(PLACES, DEPTH, &breaks)?;
+        let line = reach.mesh(MESH_PLACES, MESH_DEPTH, &breaks)?;
         Some(Self { line })
     }
 

@@ -10,7 +10,7 @@ use super::power::{FEATURES, features};
 use super::slow::UNKNOWN;
 use super::transfer::Transfer;
 use super::{PowerQuestion, SlowMode, SlowModes, Spectrum};
-use crate::generator::{Chain, Line, Reduced};
+use crate::generator::{Chain, Mesh, Reduced};
 use crate::space::Axis;
 use crate::stationary::generator::AbsorbingWork;
 
@@ -25,7 +25,7 @@ const OF_SPECTRA: usize = 32;
 const FEWER: f64 = 0.8;
 
 /// The slowest modes of a line, with the first one's left vector on the cells of an axis.
-pub(crate) fn slow_modes_on_line(line: &Line, wanted: usize, axis: &Axis) -> SlowModes {
+pub(crate) fn slow_modes_on_line(line: &Mesh, wanted: usize, axis: &Axis) -> SlowModes {
     let wanted_at_all = wanted.max(1);
     let vectors = VECTORS + VECTORS_A_MODE * wanted_at_all;
     // A function that has a part of every mode.
@@ -86,7 +86,7 @@ pub(crate) fn slow_modes_on_line(line: &Line, wanted: usize, axis: &Axis) -> Slo
 
 /// The spectra of functions of the coordinate on a line; `None` where they have no values there.
 pub(crate) fn power_spectra_on_line(
-    line: &Line,
+    line: &Mesh,
     question: &PowerQuestion<'_>,
 ) -> Option<Vec<Spectrum>> {
     let loads: Vec<Vec<f64>> = question

@@ -184,14 +184,7 @@ mod tests {
 
     #[test]
     fn a_band_by_decades_that_reaches_beyond_zero_has_no_lower_end() {
-        let track = Track {
-            title: String::new(),
-            is_logarithmic: true,
-            has_zero: false,
-            least: 0.0,
-            share: 1.0,
-            curves: Vec::new(),
-        };
+        let track = of(true, &[], &[]);
         let end = |value: f64, error: f64| track.end_of_band(value, error);
         assert_eq!([end(0.05, 0.05), end(-0.05, 0.05)], [-1.0; 2]);
         // The error is six times the value: zero lies in the band, and so does everything below the value.
@@ -199,21 +192,27 @@ mod tests {
         assert!(end(1e-5, -6e-6) < -5.0 && end(1e-5, -6e-6) > -6.0);
     }
 
-    #[test]
-    fn an_unknown_error_is_no_error_of_zero() {
-        let mut track = Track {
+    /// A track with one curve, at the whole numbers.
+    fn of(is_logarithmic: bool, values: &[f64], errors: &[f64]) -> Track {
+        let places = values.iter().enumerate();
+        Track {
             title: String::new(),
-            is_logarithmic: true,
+            is_logarithmic,
             has_zero: false,
             least: 0.0,
             share: 1.0,
             curves: vec![Curve {
                 name: String::new(),
                 stroke: Stroke::curve(0),
-                places: (0..5).map(|at| (f64::from(at), 1.0)).collect(),
-                errors: vec![0.1, 0.1, f64::NAN, f64::NAN, 0.1],
+                places: places.map(|(at, &value)| (at as f64, value)).collect(),
+                errors: errors.to_vec(),
             }],
-        };
+        }
+    }
+
+    #[test]
+    fn an_unknown_error_is_no_error_of_zero() {
+        let mut track = of(true, &[1.0; 5], &[0.1, 0.1, f64::NAN, f64::NAN, 0.1]);
         let runs = track.curves[0].known();
         assert_eq!(runs.iter().map(Vec::len).collect::<Vec<_>>(), [2, 1]);
         // By decades what is no number would reach down without end.
@@ -226,33 +225,18 @@ mod tests {
 
     #[test]
     fn a_range_holds_the_bands_but_for_one_that_is_far_wider_than_others() {
-        let of = |values: [f64; 4], errors: [f64; 4]| {
-            let places = values.iter().enumerate();
-            let track = Track {
-                title: String::new(),
-                is_logarithmic: false,
-                has_zero: false,
-                least: 0.0,
-                share: 1.0,
-                curves: vec![Curve {
-                    name: String::new(),
-                    stroke: Stroke::curve(0),
-                    places: places.map(|(at, &value)| (at as f64, value)).collect(),
-                    errors: errors.to_vec(),
-                }],
-            };
-            track.range().unwrap()
-        };
+        let range =
+            |values: [f64; 4], errors: [f64; 4]| of(false, &values, &errors).range().unwrap();
         let values = [1.0, 1.1, 1.0, 1.1];
-        let (low, high) = of(values, [0.4, 0.5, 0.4, 0.5]);
+        let (low, high) = range(values, [0.4, 0.5, 0.4, 0.5]);
         assert!(
             low < 0.6 && low > 0.4 && high > 1.6 && high < 1.8,
             "{low} {high}"
         );
-        let (low, high) = of(values, [0.01, 50.0, 0.01, 0.01]);
+        let (low, high) = range(values, [0.01, 50.0, 0.01, 0.01]);
         assert!(low > 0.8 && high < 1.3, "{low} {high}");
         // What is constant but for rounding has labels of few digits.
-        let (low, high) = of([-0.5, -0.5, -0.5 - 1e-12, -0.5], [0.0; 4]);
+        let (low, high) = range([-0.5, -0.5, -0.5 - 1e-12, -0.5], [0.0; 4]);
         assert!(high - low > 0.1, "{low} {high}");
     }
 }

@@ -2,7 +2,7 @@
 
 /// How an axis ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Ending {
+pub(crate) enum AxisEnd {
     /// At a wall.
     Wall,
     /// Where the noise dies; the density goes like this power of the distance.

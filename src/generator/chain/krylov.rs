@@ -3,7 +3,7 @@
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
-use super::{Chain, solve::Ending};
+use super::{Chain, solve::AbsorbingChain};
 
 /// A vector that is shorter than this beside the others, relative to its length before, adds nothing.
 const NOTHING: f64 = 1e-10;
@@ -42,7 +42,7 @@ impl Chain {
     }
 }
 
-impl Ending<'_> {
+impl AbsorbingChain<'_> {
     /// From functions that are zero where the process ends, by so many vectors each.
     pub(crate) fn krylov(&self, starts: &[Vec<f64>], vectors: usize) -> Krylov {
         let answer = |function: &[f64]| self.solve(&self.chain.weighted(function), |_| 0.0);

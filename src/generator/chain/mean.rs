@@ -1,7 +1,7 @@
 //! Means and standard deviations of functions of the coordinate over a line.
 
 use super::ends::STEP;
-use super::line::Line;
+use super::mesh::Mesh;
 use super::panel::{Panel, panels};
 use crate::generator::one_axis::{NODES, legendre};
 use crate::system::System;
@@ -18,7 +18,7 @@ const EVEN: f64 = 1e-6;
 
 /// A mean over a line, with its error.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct LineMean {
+pub(crate) struct MeshMean {
     pub(crate) value: f64,
     /// E |f|.
     pub(crate) size: f64,
@@ -29,7 +29,7 @@ pub(crate) struct LineMean {
 }
 
 /// An integral over an element, or over some beside each other.
-struct Part {
+struct Integral {
     integral: f64,
     size: f64,
     error: f64,
@@ -37,7 +37,7 @@ struct Part {
     ends: [(f64, f64); 2],
 }
 
-impl Part {
+impl Integral {
     /// What may be between the last point of a part and the first one of the next, where their polynomials differ.
     fn between(&self, next: &Self) -> f64 {
         let ((own, width), (other, next_width)) = (self.ends[1], next.ends[0]);
@@ -45,14 +45,14 @@ impl Part {
     }
 }
 
-impl Line {
+impl Mesh {
     /// E f, of a function that may be infinite or nothing at single places.
     pub(crate) fn mean(
         &self,
         system: &dyn System,
         of: &dyn Fn(&[f64; NODES]) -> [f64; NODES],
-    ) -> LineMean {
-        let rough: Vec<Part> = self
+    ) -> MeshMean {
+        let rough: Vec<Integral> = self
             .elements
             .iter()
             .map(|element| {
@@ -72,8 +72,8 @@ impl Line {
                 let known = (element.level, element.ends);
                 self.halved(system, of, known, (part, tolerance), MOST_HALVINGS)
             });
-        let parts: Vec<Part> = parts.collect();
-        let sums = |of: fn(&Part) -> f64| parts.iter().map(of).sum::<f64>();
+        let parts: Vec<Integral> = parts.collect();
+        let sums = |of: fn(&Integral) -> f64| parts.iter().map(of).sum::<f64>();
         let (mut value, mut error) = (sums(|part| part.integral), sums(|part| part.error));
         error += ROUNDING * whole;
         let neighbours = parts.windows(2).map(|pair| pair[0].between(&pair[1]));
@@ -108,7 +108,7 @@ impl Line {
         if endless != [false; 2] {
             error = f64::INFINITY;
         }
-        LineMean {
+        MeshMean {
             value,
             size: whole,
             error: if error.is_nan() { f64::INFINITY } else { error },
@@ -117,7 +117,7 @@ impl Line {
     }
 
     /// From values and masses at the points of an element.
-    fn part(&self, width: f64, values: &[f64; NODES], masses: &[f64; NODES]) -> Part {
+    fn part(&self, width: f64, values: &[f64; NODES], masses: &[f64; NODES]) -> Integral {
         let terms = values.iter().zip(masses);
         // Where there is no mass, nothing is.
         let terms = terms.map(|(value, mass)| if *mass > 0.0 { value * mass } else { 0.0 });
@@ -139,7 +139,7 @@ impl Line {
             let sum: f64 = terms.map(|(n, one)| one * sign.powi(n as i32)).sum();
             (sum / width, near)
         });
-        Part {
+        Integral {
             integral: products.iter().sum(),
             size: products.iter().map(|one| one.abs()).sum(),
             error: coefficients[NODES - 2].abs() + coefficients[NODES - 1].abs(),
@@ -153,9 +153,9 @@ impl Line {
         system: &dyn System,
         of: &dyn Fn(&[f64; NODES]) -> [f64; NODES],
         (level, (from, to)): (f64, (f64, f64)),
-        (known, tolerance): (Part, f64),
+        (known, tolerance): (Integral, f64),
         halvings: usize,
-    ) -> Part {
+    ) -> Integral {
         let middle = 0.5 * (from + to);
         if halvings == 0 || middle <= from || middle >= to {
             return known;
@@ -165,7 +165,7 @@ impl Line {
             return known;
         };
         let mut level = level;
-        let mut done: Option<Part> = None;
+        let mut done: Option<Integral> = None;
         for (
             Panel {
                 points,
@@ -185,7 +185,7 @@ impl Line {
             level += rise;
             done = Some(match done {
                 None => part,
-                Some(first) => Part {
+                Some(first) => Integral {
                     integral: first.integral + part.integral,
                     size: first.size + part.size,
                     error: first.error + part.error + first.between(&part),
@@ -199,7 +199,7 @@ impl Line {
     /// How much lies in the last step toward an end, and in the one before, where steps are even in the logarithm of
     /// the distance: halves of that to an end at which the noise dies, or quarters of doublings beyond the range;
     /// `None` at a wall.
-    fn last_steps(&self, end: usize, parts: &[Part]) -> Option<(f64, f64)> {
+    fn last_steps(&self, end: usize, parts: &[Integral]) -> Option<(f64, f64)> {
         let count = self.elements.len();
         let place = if end == 0 { 0 } else { count };
         let at = self.places[place];
@@ -224,13 +224,13 @@ impl Line {
 
     /// Power with which the density falls at an open end, from one step of the distance to the next.
     pub(crate) fn fall(&self, end: usize) -> Option<f64> {
-        let parts = self.elements.iter().map(|element| Part {
+        let parts = self.elements.iter().map(|element| Integral {
             integral: 0.0,
             size: element.masses.iter().sum(),
             error: 0.0,
             ends: [(0.0, 0.0); 2],
         });
-        let parts: Vec<Part> = parts.collect();
+        let parts: Vec<Integral> = parts.collect();
         let (last, before) = self.last_steps(end, &parts)?;
         let power = 1.0 - (last / before).ln() / STEP.ln();
         (self.reached[end].open_from.is_some() && last > 0.0).then_some(power)

@@ -13,31 +13,31 @@
 //! | how an axis ends, and how its line does | `ends.rs` |
 //! | integrals by eight points | `panel.rs` |
 //! | how far a line reaches, and its places | `reach.rs` |
-//! | masses and conductances, and grids of a line | `line.rs` |
+//! | masses and conductances, and grids of a line | `mesh.rs` |
 //! | means of functions along a line | `mean.rs` |
 //! | L f = -g, without subtraction | `solve.rs` |
 //! | eigenvalues and functions from a Krylov space | `krylov.rs` |
 
 mod ends;
 mod krylov;
-mod line;
 mod mean;
+mod mesh;
 mod panel;
 mod reach;
 mod solve;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use ends::Ending;
+pub(crate) use ends::AxisEnd;
 pub(crate) use krylov::Reduced;
-pub(crate) use line::Line;
+pub(crate) use mesh::Mesh;
 pub(crate) use reach::Reach;
 
 /// Number of places of a line for rates, spectra and passages.
-pub(crate) const PLACES: usize = 800;
+pub(crate) const MESH_PLACES: usize = 800;
 
 /// ln of how much less likely than the likeliest states those are at the ends of such a line.
-pub(crate) const DEPTH: f64 = 70.0;
+pub(crate) const MESH_DEPTH: f64 = 70.0;
 
 /// Masses of places in their order, and conductances between neighbours: mass times the rate from one to the other.
 #[derive(Debug, Clone)]

@@ -5,8 +5,8 @@
 //! density, and serve what happens where states are. An end at which the noise dies is neared by halves, and a line
 //! goes on beyond an open end of the range until hardly anything is there.
 
-use super::ends::{Ending, Reached, STEP};
-use super::line::Line;
+use super::ends::{AxisEnd, Reached, STEP};
+use super::mesh::Mesh;
 use super::panel::{Panel, panels};
 use crate::generator::one_axis::{Rule, look, surfaces};
 use crate::space::Axis;
@@ -40,7 +40,7 @@ pub(crate) struct Reach<'a> {
     /// Its range.
     pub(crate) axis: &'a Axis,
     /// The lower and the upper end.
-    pub(crate) ends: [Ending; 2],
+    pub(crate) ends: [AxisEnd; 2],
     /// The mean of the coordinate, from which distances beyond the range are.
     pub(crate) mean: f64,
 }
@@ -54,7 +54,7 @@ struct Skeleton {
 impl Reach<'_> {
     /// The line with about so many places, to where the density is exp(-depth) of what it is at most, with places on
     /// all `breaks`; `None` where it has no end: the density rises beyond the range, or the equations end there.
-    pub(crate) fn line(&self, count: usize, depth: f64, breaks: &[f64]) -> Option<Line> {
+    pub(crate) fn mesh(&self, count: usize, depth: f64, breaks: &[f64]) -> Option<Mesh> {
         let rule = Rule::new();
         let mut known: Vec<f64> = surfaces(self.system);
         known.extend_from_slice(breaks);
@@ -63,7 +63,7 @@ impl Reach<'_> {
         let (mut skeleton, mut reached) = self.within(&rule, &known, depth)?;
         let top = skeleton.top();
         for (end, reached) in reached.iter_mut().enumerate() {
-            if self.ends[end] == Ending::Open {
+            if self.ends[end] == AxisEnd::Open {
                 reached.infinitely_far = true;
                 reached.open_from =
                     Some(skeleton.extend(self, &rule, (end, &known), top - depth)?);
@@ -71,7 +71,7 @@ impl Reach<'_> {
         }
         skeleton.prune(top - depth.max(DEEPEST), &known, &reached);
         let places = skeleton.divided(count);
-        Line::new(self.system, rule, places, &known, reached)
+        Mesh::new(self.system, rule, places, &known, reached)
     }
 
     /// Inside the range.
@@ -90,7 +90,7 @@ impl Reach<'_> {
             infinitely_far: false,
         }; 2];
         for (end, reached) in reached.iter_mut().enumerate() {
-            if let Ending::Natural(exponent) = self.ends[end] {
+            if let AxisEnd::Natural(exponent) = self.ends[end] {
                 let at = [self.axis.from(), self.axis.to()][end];
                 reached.natural = Some((at, exponent)).filter(|one| one.1.is_finite());
                 self.near(&mut places, (end, exponent), depth);
@@ -99,7 +99,7 @@ impl Reach<'_> {
         let panels = panels(self.system, rule, &pairs(&places))?;
         let count = panels.len();
         for (end, [first, second]) in [[0, 1], [count - 1, count - 2]].into_iter().enumerate() {
-            let is_natural = matches!(self.ends[end], Ending::Natural(_));
+            let is_natural = matches!(self.ends[end], AxisEnd::Natural(_));
             let ratio = panels[first].spread / panels[second].spread;
             reached[end].infinitely_far = is_natural && ratio > INFINITELY_FAR;
         }

@@ -4,15 +4,15 @@
 use super::Chain;
 
 /// A chain that ends in some places.
-pub(crate) struct Ending<'a> {
+pub(crate) struct AbsorbingChain<'a> {
     pub(super) chain: &'a Chain,
     pub(super) ends: &'a [bool],
 }
 
 impl Chain {
     /// The chain that ends in the marked places.
-    pub(crate) fn until<'a>(&'a self, ends: &'a [bool]) -> Ending<'a> {
-        Ending { chain: self, ends }
+    pub(crate) fn until<'a>(&'a self, ends: &'a [bool]) -> AbsorbingChain<'a> {
+        AbsorbingChain { chain: self, ends }
     }
 
     /// ∫ g p f of the loads of g and the values of f.
@@ -30,7 +30,7 @@ impl Chain {
     }
 }
 
-impl Ending<'_> {
+impl AbsorbingChain<'_> {
     /// f with L f = -g, of the loads ∫ φ g p, and with these values at the places where it ends. Infinite, or not a
     /// number, where no such place is reached.
     pub(crate) fn solve(&self, load: &[f64], at_ends: impl Fn(usize) -> f64) -> Vec<f64> {

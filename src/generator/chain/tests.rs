@@ -20,14 +20,14 @@ fn line(
     (from, to): (f64, f64),
     walls: [bool; 2],
     breaks: &[f64],
-) -> (Arc<dyn System>, Line) {
+) -> (Arc<dyn System>, Mesh) {
     let system = system(drift, noises);
     let axis = Axis::uniform(from, to, 40).unwrap();
     let found = one_axis(system.as_ref(), &axis).unwrap();
     let end = |end: usize| match (found.ends[end], walls[end]) {
-        (Some(exponent), _) => Ending::Natural(exponent),
-        (None, true) => Ending::Wall,
-        (None, false) => Ending::Open,
+        (Some(exponent), _) => AxisEnd::Natural(exponent),
+        (None, true) => AxisEnd::Wall,
+        (None, false) => AxisEnd::Open,
     };
     let reach = Reach {
         system: system.as_ref(),
@@ -35,12 +35,12 @@ fn line(
         ends: [end(0), end(1)],
         mean: found.moments.0,
     };
-    let line = reach.line(PLACES, DEPTH, breaks).unwrap();
+    let line = reach.mesh(MESH_PLACES, MESH_DEPTH, breaks).unwrap();
     (system, line)
 }
 
 /// Decay rates with their errors.
-fn rates(line: &Line, count: usize) -> Vec<(f64, f64)> {
+fn rates(line: &Mesh, count: usize) -> Vec<(f64, f64)> {
     let all = line.grids().map(|grid| {
         let chain = &grid.chain;
         let places = 0..chain.masses.len();
@@ -166,10 +166,10 @@ fn means_reach_beyond_the_range_and_into_ends_where_noise_dies() {
         let reach = Reach {
             system: system.as_ref(),
             axis: &axis,
-            ends: [Ending::Open; 2],
+            ends: [AxisEnd::Open; 2],
             mean: 0.0,
         };
-        let line = reach.line(128, 600.0, &[]).unwrap();
+        let line = reach.mesh(128, 600.0, &[]).unwrap();
         (system, line)
     };
     let found = on_normal.mean(normal.as_ref(), &of(|x| (3.0 * x).exp()));
@@ -206,8 +206,8 @@ fn a_line_without_an_end_is_none() {
     let reach = Reach {
         system: system.as_ref(),
         axis: &axis,
-        ends: [Ending::Open; 2],
+        ends: [AxisEnd::Open; 2],
         mean: 0.0,
     };
-    assert!(reach.line(PLACES, DEPTH, &[]).is_none());
+    assert!(reach.mesh(MESH_PLACES, MESH_DEPTH, &[]).is_none());
 }

@@ -22,7 +22,8 @@ use crate::system::{LANES, System};
 use cuts::cuts_toward;
 
 pub(super) use cuts::surfaces;
-pub(super) use rule::{NODES, Rule, legendre, look};
+pub(crate) use rule::NODES;
+pub(super) use rule::{Rule, legendre, look};
 
 /// Panels a cell; eight points on each of eight panels fill a batch.
 const PANELS: usize = LANES / NODES;

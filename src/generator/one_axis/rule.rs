@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use crate::system::{LANES, Lanes, System};
 
 /// Gauss-Legendre points on a panel.
-pub(in crate::generator) const NODES: usize = 8;
+pub(crate) const NODES: usize = 8;
 
 /// Points and weights on [0, 1], and the integrals of the polynomial through values at the points from 0 to each of
 /// them.

@@ -3,7 +3,7 @@
 
 use crate::continuation::Finding;
 use crate::density::{EstimatedMoments, Moments};
-use crate::generator::{Line, Reach};
+use crate::generator::{Mesh, NODES, Reach};
 use crate::method::MethodError;
 use crate::method::report::Reporter;
 use crate::system::{BoundQuantity, LANES};
@@ -16,7 +16,7 @@ const PLACES: usize = 128;
 const DEPTH: f64 = 600.0;
 
 /// A function at some places.
-type Function<'a> = Box<dyn Fn(&[f64; 8]) -> [f64; 8] + 'a>;
+type Function<'a> = Box<dyn Fn(&[f64; NODES]) -> [f64; NODES] + 'a>;
 
 /// Moments over a line, and whether the mean has no end.
 struct OnLine {
@@ -34,7 +34,7 @@ pub(super) fn put_on_line<'a>(
     formulas: impl Iterator<Item = &'a BoundQuantity>,
     moments: &mut [EstimatedMoments],
 ) -> Result<(), MethodError> {
-    let Some(line) = reach.line(PLACES, DEPTH, &[]) else {
+    let Some(line) = reach.mesh(PLACES, DEPTH, &[]) else {
         return Ok(());
     };
     reporter.is_whole();
@@ -81,9 +81,9 @@ fn values(formula: &BoundQuantity) -> Function<'_> {
 }
 
 /// Mean and deviation of a function.
-fn of(line: &Line, reach: &Reach<'_>, function: &Function<'_>) -> OnLine {
+fn of(line: &Mesh, reach: &Reach<'_>, function: &Function<'_>) -> OnLine {
     let mean = line.mean(reach.system, function);
-    let square = |places: &[f64; 8]| function(places).map(|value| (value - mean.value).powi(2));
+    let square = |places: &[f64; NODES]| function(places).map(|value| (value - mean.value).powi(2));
     let variance = line.mean(reach.system, &square);
     let deviation = variance.value.max(0.0).sqrt();
     // About a mean that is off by so much the variance is larger by its square.

@@ -22,7 +22,7 @@ use super::unknowns::distance;
 use crate::cancellation::Cancellation;
 use crate::continuation::{Solution, SolveReport};
 use crate::density::EstimatedDensity;
-use crate::generator::{DEPTH, LineRates, PLACES, Reach};
+use crate::generator::{LineRates, MESH_DEPTH, MESH_PLACES, Reach};
 use crate::method::MethodError;
 use crate::method::neighbours::Neighbours;
 use crate::method::watched::planes;
@@ -174,7 +174,7 @@ impl GeneratorSession {
         let asks = &problem.family().questions;
         let is_line_asked = asks.spectrum.is_some() || asks.asks_for_modes();
         let reach = reach.filter(|_| is_line_asked && !problem.subject().measures.is_empty());
-        let line = reach.and_then(|reach| reach.line(PLACES, DEPTH, &[]));
+        let line = reach.and_then(|reach| reach.mesh(MESH_PLACES, MESH_DEPTH, &[]));
         let line = line.as_ref();
         add_slow_modes(report, &self.source, at, (density, line), cancellation)?;
         add_spectra(report, &self.source, at, (unknowns, line), cancellation)

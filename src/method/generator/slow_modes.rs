@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::GeneratorSource;
 use crate::cancellation::Cancellation;
 use crate::continuation::{Finding, PassageFault, SolveReport};
-use crate::generator::{GeneratorOptions, Line, levels};
+use crate::generator::{GeneratorOptions, Mesh, levels};
 use crate::method::MethodError;
 use crate::method::measures::{formula_measures, measures_of_slow_modes, switching_measures};
 use crate::passage::KnownDensity;
@@ -30,7 +30,7 @@ pub(super) fn add_slow_modes(
     report: &mut SolveReport,
     source: &GeneratorSource,
     (system, value): (&Arc<dyn System>, f64),
-    (density, line): (Option<KnownDensity<'_>>, Option<&Line>),
+    (density, line): (Option<KnownDensity<'_>>, Option<&Mesh>),
     cancellation: &Cancellation,
 ) -> Result<(), MethodError> {
     let (subject, space) = (source.problem.subject(), source.problem.space());

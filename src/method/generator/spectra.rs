@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::GeneratorSource;
 use crate::cancellation::Cancellation;
 use crate::continuation::{Finding, Fluctuations, SolveReport};
-use crate::generator::{GeneratorOptions, Line};
+use crate::generator::{GeneratorOptions, Mesh};
 use crate::method::measures::measures_of_spectrum;
 use crate::method::{MethodError, Problem};
 use crate::spectrum::{
@@ -33,7 +33,7 @@ pub(super) fn add_spectra(
     report: &mut SolveReport,
     source: &GeneratorSource,
     (system, value): (&Arc<dyn System>, f64),
-    (unknowns, line): (Option<&[f64]>, Option<&Line>),
+    (unknowns, line): (Option<&[f64]>, Option<&Mesh>),
     cancellation: &Cancellation,
 ) -> Result<(), MethodError> {
     let (subject, space) = (source.problem.subject(), source.problem.space());

@@ -1,4 +1,4 @@
-//! A line: places on an axis, and the exact masses and conductances between them.
+//! A mesh: places on a line, and the exact masses and conductances between them.
 
 use super::ends::Reached;
 use super::panel::{Panel, panels};
@@ -26,8 +26,8 @@ pub(super) struct Element {
     spread: f64,
 }
 
-/// Places on an axis, with what is between them.
-pub(crate) struct Line {
+/// Places on a line, with what is between them.
+pub(crate) struct Mesh {
     /// Ascending.
     pub(crate) places: Vec<f64>,
     pub(super) elements: Vec<Element>,
@@ -42,7 +42,7 @@ pub(crate) struct Line {
     pub(super) error: f64,
 }
 
-impl Line {
+impl Mesh {
     /// `None` where drift or noise are not finite, or the masses do not sum to a number.
     pub(super) fn new(
         system: &dyn System,
