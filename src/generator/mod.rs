@@ -14,6 +14,7 @@
 //! | fluxes along a grid line: fitted and advected drift | `line.rs`, `smooth.rs` |
 //! | rates along an axis of modes | `modes.rs` |
 //! | the matrix | `assemble.rs`, `columns.rs` |
+//! | what fluxes through a plane at which a force jumps leave out | `jumps.rs` |
 //! | a noise that moves an axis and an angle at once | `shared_noise.rs` |
 //! | decay of the last harmonics of an angle without noise | `spectral_viscosity.rs` |
 //! | the matrix of a process that ends in a region | `absorbing.rs` |
