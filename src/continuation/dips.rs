@@ -65,8 +65,9 @@ pub(super) fn on_flanks(points: &[(&Point, &Flanks)], tolerance: f64) -> Option<
     })
 }
 
-/// A value between two neighbours whose signatures are the same although one pair of peak and valley was born on a
-/// flank between them and another has vanished: the shoulders of both have changed their signs.
+/// A value between two neighbours where one pair of peak and valley was born on a flank and another has vanished: the
+/// shoulders of both have changed their signs. Where the signatures of both are not the same, a change between them is
+/// found without that, and the slopes must be known without cells for two more to be told from it.
 pub(super) fn between_flanks(points: &[(&Point, &Flanks)], tolerance: f64) -> Option<f64> {
     let observables = points.first().map_or(0, |point| point.1.len());
     let mut pairs = points.windows(2);
@@ -78,7 +79,8 @@ pub(super) fn between_flanks(points: &[(&Point, &Flanks)], tolerance: f64) -> Op
         }
         (0..observables).find_map(|observable| {
             let same = a.detections[observable].signature == b.detections[observable].signature;
-            if !same {
+            let is_exact = |point: &Point| point.densities[observable].structure.profile.is_some();
+            if !same && !(is_exact(a) && is_exact(b)) {
                 return None;
             }
             let reach = reach(&a.densities[observable]);

@@ -1,7 +1,7 @@
 //! What a closer look has found, and how its rows take the place of those of the sweep.
 
 use super::label::{self, Label, Located};
-use super::{BifurcationStatus, Doubt, Point};
+use super::{BifurcationStatus, Doubt, Point, SweepResult};
 use crate::density::Observable;
 use crate::topology::Signature;
 
@@ -145,6 +145,27 @@ impl Told {
         } else {
             Self::Bands
         }
+    }
+}
+
+impl SweepResult {
+    /// The densities that the sweep counts differently at some of its values although finer cells have shown that nothing
+    /// changes between them: its cells are too wide to count by.
+    pub fn miscounted(&self) -> Vec<Observable> {
+        let is_miscounted = |&(place, observable): &(usize, &Observable)| {
+            let is_looked_at = self.looks.iter().any(|look| look.observable == *observable);
+            let has_rows = self.bifurcations().any(|row| row.observable == *observable);
+            let detections = self
+                .points
+                .iter()
+                .filter_map(|one| one.detections.get(place));
+            let mut counts = detections.map(|one| one.signature);
+            let first = counts.next();
+            is_looked_at && !has_rows && counts.any(|one| Some(one) != first)
+        };
+        let observables = self.subject.observables.iter().enumerate();
+        let miscounted = observables.filter(is_miscounted);
+        miscounted.map(|(_, observable)| *observable).collect()
     }
 }
 

@@ -34,8 +34,11 @@ pub(super) struct FaceStencil {
 pub(super) struct Break {
     /// Its number, that of the cell above it.
     pub(super) face: usize,
-    /// Where the slope of the density jumps, as it does with a force: how the slope on either side is taken of the
-    /// nodes, from the plane on. Where a force bends it is the second derivative that jumps.
+    /// Whether the slope of the density jumps, as it does with a force. Where a force bends it is the second derivative
+    /// that jumps.
+    pub(super) slope_jumps: bool,
+    /// How the slope on either side is taken of the nodes, from the plane on, where it jumps and the scheme makes good
+    /// what fluxes leave out there.
     pub(super) slope: Option<[f64; REACH]>,
 }
 
@@ -196,8 +199,12 @@ fn breaks(
         .filter(|face| (REACH..=axis.count().saturating_sub(REACH)).contains(face))
         .filter_map(|face| {
             let (sharpness, jumps) = sharpness(system, (index, face), space)?;
-            let slope = jumps.then(|| scheme.slope());
-            Some((sharpness, Break { face, slope }))
+            let at = Break {
+                face,
+                slope_jumps: jumps,
+                slope: scheme.slope().filter(|_| jumps),
+            };
+            Some((sharpness, at))
         })
         .collect();
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -308,7 +315,7 @@ fn beside_breaks(
     let below = face - faces().filter(|at| *at < face).max().unwrap_or(0);
     let above = faces().filter(|at| *at > face).min().unwrap_or(count) - face;
     match breaks.iter().find(|at| at.face == face) {
-        Some(at) => Some(scheme.at_break(at.slope.is_some())),
+        Some(at) => Some(scheme.at_break(at.slope_jumps)),
         None => scheme.one_sided(below, above),
     }
 }

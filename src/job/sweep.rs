@@ -315,7 +315,8 @@ pub(crate) fn draw_sweep(sweep: &Sweep, found: &SweepResult) -> Vec<Figure> {
 pub(crate) fn sweep_outcome(found: &SweepResult, locate: &LocateOptions) -> Outcome {
     let mut points = found.points.iter();
     let mut statuses = found.labels.iter().filter_map(|row| row.status());
-    let is_complete =
-        points.all(Point::is_sound) && statuses.all(|status| locate.is_met_by(status));
+    let is_complete = points.all(Point::is_sound)
+        && statuses.all(|status| locate.is_met_by(status))
+        && found.miscounted().is_empty();
     Outcome::of(found.interrupted, is_complete)
 }

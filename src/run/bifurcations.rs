@@ -9,7 +9,7 @@ use super::{
     latex::{self, escape},
     number::format_with_error,
 };
-use crate::continuation::{ErrorParts, Label, RowWords};
+use crate::continuation::{ErrorParts, Label, RowWords, SweepResult};
 use crate::system::Family;
 
 /// The table's columns; numbers in full.
@@ -100,6 +100,21 @@ pub(crate) fn bifurcations_markdown(family: &Family, labels: &[Label]) -> String
         );
     }
     text
+}
+
+/// Names the densities that a sweep counts differently from value to value, while finer cells show that nothing changes;
+/// `None` where there are none.
+pub(crate) fn miscounted_in_words(result: &SweepResult) -> Option<String> {
+    let names: Vec<String> = (result.miscounted().iter())
+        .map(|observable| observable.name(&result.subject.family))
+        .collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "{}: the counts of the sweep differ from value to value, but finer cells show no change; its cells are too wide \
+             to count by: give more",
+            names.join(", ")
+        )
+    })
 }
 
 /// A LaTeX table with booktabs rules, values rounded to their errors.

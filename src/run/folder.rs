@@ -10,8 +10,8 @@ use super::spectra::fluctuation_files;
 use super::store::write_store;
 use super::{
     Ending, Layout, Manifest, RunError, bifurcations_csv, bifurcations_json, bifurcations_markdown,
-    bifurcations_tex, checks, features_csv, features_table, points_csv, points_table,
-    settling::Settling,
+    bifurcations_tex, checks, features_csv, features_table, miscounted_in_words, points_csv,
+    points_table, settling::Settling,
 };
 use crate::continuation::{Point, Subject, SweepResult};
 
@@ -196,12 +196,15 @@ pub(crate) fn sweep_files(result: &SweepResult) -> Result<Vec<(String, String)>,
         ..
     } = result;
     let family = &subject.family;
+    let miscounted =
+        miscounted_in_words(result).map_or_else(String::new, |words| format!("\n{words}\n"));
+    let markdown = bifurcations_markdown(family, labels) + &miscounted;
     let mut files = vec![
         ("points.csv", points_csv(subject, points)?),
         ("features.csv", features_csv(subject, points)?),
         ("bifurcations.csv", bifurcations_csv(family, labels)?),
         ("bifurcations.json", bifurcations_json(family, labels)?),
-        ("bifurcations.md", bifurcations_markdown(family, labels)),
+        ("bifurcations.md", markdown),
         ("bifurcations.tex", bifurcations_tex(family, labels)),
     ];
     if let Some(checks) = checks {

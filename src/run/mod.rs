@@ -113,6 +113,7 @@ mod zarr;
 pub(crate) use atomic::write_anywhere;
 pub(crate) use bifurcations::{
     bifurcations_csv, bifurcations_json, bifurcations_markdown, bifurcations_tex,
+    miscounted_in_words,
 };
 pub(crate) use checksums::Checked;
 pub(crate) use clean::{Removable, Stays, removable_runs, remove_run};

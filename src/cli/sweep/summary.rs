@@ -6,7 +6,7 @@ use comfy_table::{Table, presets};
 
 use crate::continuation::{Finding, Label, Located, Point, PointStatus, RowWords, SweepResult};
 use crate::job::QUICK_POINTS;
-use crate::run::{doubt_in_words, format_number, format_with_error};
+use crate::run::{doubt_in_words, format_number, format_with_error, miscounted_in_words};
 use crate::system::{Family, MeasureLevel};
 
 /// The labelled points as a table, the signatures at both ends, and where the files are.
@@ -158,38 +158,7 @@ fn ends(result: &SweepResult) -> String {
             words.join(", ")
         );
     }
-    text + &unlike_ends(result, [solved().next(), solved().next_back()])
-}
-
-/// Names the densities that are counted differently at both ends of a sweep without a change between: finer cells have
-/// shown that there is none.
-fn unlike_ends(result: &SweepResult, ends: [Option<&Point>; 2]) -> String {
-    let [Some(first), Some(last)] = ends else {
-        return String::new();
-    };
-    let pairs = first.detections.iter().zip(&last.detections);
-    let pairs = result.subject.observables.iter().zip(pairs);
-    let unlike = pairs.filter(|(observable, (first, last))| {
-        let is_of = |row: &&Located| row.observable == **observable;
-        let is_looked_at = result
-            .looks
-            .iter()
-            .any(|look| look.observable == **observable);
-        is_looked_at
-            && first.signature != last.signature
-            && !result.bifurcations().any(|row| is_of(&row))
-    });
-    let names: Vec<String> = unlike
-        .map(|(observable, _)| observable.name(&result.subject.family))
-        .collect();
-    if names.is_empty() {
-        return String::new();
-    }
-    format!(
-        "{}: the counts at both ends differ, but finer cells show no change between them; the cells of this sweep are too \
-         wide to count by at one end: give more\n",
-        names.join(", ")
-    )
+    text + &miscounted_in_words(result).map_or_else(String::new, |words| words + "\n")
 }
 
 /// The files of a run that are there, in a fixed order.

@@ -18,6 +18,9 @@ const SAME: f64 = 0.05;
 /// Checks on either side that the error of a point is taken from: where in its cell an indicator's place lies makes a
 /// single one small by chance.
 const NEIGHBOURS: usize = 2;
+/// How far an indicator's place moves from one check to the next at most, in ranges of its axis: what finer cells change
+/// is not the same everywhere.
+const FARTHEST: f64 = 0.05;
 
 /// What a check shows: how far uphill the curve is by it.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,18 +102,30 @@ impl Task<'_> {
         (points.collect(), work)
     }
 
-    /// The points that are checked. The slope at a kink follows from the equations: no grid takes part.
+    /// The points that are checked: both ends, every so many from the start on, and those at which the indicator's place
+    /// has moved far since the last one. The slope at a kink follows from the equations: no grid takes part.
     fn selection(&self, walked: &Walked) -> Vec<usize> {
         let every = self.options.check_every;
         if every == 0 || self.start.kind.traits().is_exact {
             return Vec::new();
         }
         let last = walked.points.len() - 1;
-        let is_chosen = |&index: &usize| {
-            let from_start = index.abs_diff(walked.start);
-            index == 0 || index == last || from_start.is_multiple_of(every)
+        let mut chosen = vec![walked.start];
+        let mut go = |indices: &mut dyn Iterator<Item = usize>| {
+            let mut before = walked.start;
+            for index in indices {
+                let is_due = index.abs_diff(walked.start).is_multiple_of(every)
+                    || moved(&walked.points[before], &walked.points[index]) > FARTHEST;
+                if index == 0 || index == last || is_due {
+                    chosen.push(index);
+                    before = index;
+                }
+            }
         };
-        (0..=last).filter(is_chosen).collect()
+        go(&mut (walked.start + 1..=last));
+        go(&mut (0..walked.start).rev());
+        chosen.sort_unstable();
+        chosen
     }
 
     /// What another source shows at the selected points, `None` where it was asked to stop.
@@ -244,18 +259,24 @@ fn between(checks: &[Check], nodes: &[WalkPoint], index: usize, of_distance: f64
     let largest = around
         .iter()
         .fold(0.0_f64, |max, moved| max.max(moved.abs()));
-    let from_neighbours = match below.index == above.index {
-        true => 0.0,
-        false => spread(&around),
-    };
     let leaks = [below, above].map(|check| moved(&check.enclosed).map_or(0.0, f64::abs));
     Interpolated {
         shift: pair.map_or(0.0, |(a, b)| (1.0 - share) * a + share * b),
-        grid: pair.map(|_| of_distance * largest + from_neighbours),
+        grid: pair.map(|_| of_distance * largest + spread(&around)),
         leak: LEAK_ALLOWANCE * leaks[0].max(leaks[1]),
         is_own: below.index == index,
         doubt: nearest.doubt(),
     }
+}
+
+/// How far the indicator's place moves between two points, in ranges of the axis along which it is more.
+fn moved(one: &WalkPoint, other: &WalkPoint) -> f64 {
+    let axes = one.reading.density.axes.iter();
+    let places = one.reading.indicator.place.iter();
+    let pairs = axes.zip(places.zip(&other.reading.indicator.place));
+    let shares =
+        pairs.map(|(axis, (from, to))| axis.apart(*from, *to).abs() / (axis.to() - axis.from()));
+    shares.fold(0.0, f64::max)
 }
 
 /// How far apart the numbers of a list are.

@@ -2,7 +2,7 @@
 //! it, and crossings.
 
 use super::found::{CodimensionTwoKind, Curve, CurvePoint, EndReason};
-use super::piece::Piece;
+use super::piece::{Piece, passes_through};
 use super::walked::apart;
 use crate::continuation::doubt::status_of;
 use crate::continuation::{BifurcationStatus, Doubt};
@@ -137,16 +137,20 @@ fn add(
     }
 }
 
-/// Where two curves cross, in the box with sides of length one, with the error there.
+/// Where two curves cross, in the box with sides of length one, with the error there. A curve that touches another one, as
+/// folds do where they begin at a split, is beside it by less than both errors on one side, and does not cross it.
 fn crossings(first: &Curve, second: &Curve) -> Vec<([f64; 2], f64, Vec<Doubt>)> {
     let mut found: Vec<([f64; 2], f64, Vec<Doubt>)> = Vec::new();
-    let others: Vec<Piece> = Piece::all_of(second).collect();
-    for piece in Piece::all_of(first) {
-        for other in others.iter().filter(|other| piece.is_near(other)) {
-            let Some((at, error)) = piece.meets(other) else {
+    let [own, others] = [first, second].map(|curve| Piece::all_of(curve).collect::<Vec<Piece>>());
+    for (place, piece) in own.iter().enumerate() {
+        for (place_there, other) in others.iter().enumerate() {
+            let met = piece.is_near(other).then(|| piece.meets(other)).flatten();
+            let Some((at, error)) = met else {
                 continue;
             };
-            if found.iter().all(|one| apart(one.0, at) > SAME) {
+            let is_clear =
+                passes_through(&own, place, &others) || passes_through(&others, place_there, &own);
+            if is_clear && found.iter().all(|one| apart(one.0, at) > SAME) {
                 let doubts = piece.doubts.iter().chain(&other.doubts);
                 found.push((at, error, doubts.cloned().collect()));
             }

@@ -99,6 +99,26 @@ impl Piece {
         met.then_some((p, error))
     }
 
+    /// How far a place lies to the left of it, negative to the right; `None` where its nearest point is no inner one.
+    fn aside(&self, place: [f64; 2]) -> Option<f64> {
+        let chord = [0, 1].map(|k| self.ends[1][k] - self.ends[0][k]);
+        let from = [0, 1].map(|k| place[k] - self.ends[0][k]);
+        let mut t =
+            (from[0] * chord[0] + from[1] * chord[1]) / (chord[0] * chord[0] + chord[1] * chord[1]);
+        // A piece bends little: each step leaves a small share of what is left.
+        for _ in 0..STEPS {
+            let (p, dp) = self.at(t.clamp(-1.0, 2.0));
+            let gap = [place[0] - p[0], place[1] - p[1]];
+            t += (gap[0] * dp[0] + gap[1] * dp[1]) / (dp[0] * dp[0] + dp[1] * dp[1]);
+        }
+        if !(-1e-9..=1.0 + 1e-9).contains(&t) {
+            return None;
+        }
+        let (p, dp) = self.at(t);
+        let gap = [place[0] - p[0], place[1] - p[1]];
+        Some((dp[0] * gap[1] - dp[1] * gap[0]) / dp[0].hypot(dp[1]))
+    }
+
     /// Where it has this value of one coordinate, 0 or 1, with its direction there, of length one; `None` where its
     /// ends do not lie on either side of it.
     pub(super) fn crosses(&self, coordinate: usize, value: f64) -> Option<([f64; 2], [f64; 2])> {
@@ -127,6 +147,23 @@ impl Piece {
         let length = along[0].hypot(along[1]);
         (length > 0.0).then(|| (at, along.map(|part| part / length)))
     }
+}
+
+/// Whether a curve leaves another one to both sides by more than the errors of both, before it ends: seen from the piece
+/// with this place in its list. Where one touches the other, or ends beside it, errors alone make a crossing.
+pub(super) fn passes_through(curve: &[Piece], at: usize, other: &[Piece]) -> bool {
+    let is_left = |place: [f64; 2], error: f64| {
+        let gaps = other.iter().filter_map(|piece| {
+            let gap = piece.aside(place)?;
+            Some((gap, error + piece.error))
+        });
+        let (gap, error) = gaps.min_by(|one, two| one.0.abs().total_cmp(&two.0.abs()))?;
+        (gap.abs() > error).then_some(gap > 0.0)
+    };
+    let (mut behind, mut ahead) = (curve[..=at].iter().rev(), curve[at..].iter());
+    let behind = behind.find_map(|piece| is_left(piece.ends[0], piece.error));
+    let ahead = ahead.find_map(|piece| is_left(piece.ends[1], piece.error));
+    behind.zip(ahead).is_some_and(|(one, two)| one != two)
 }
 
 #[cfg(test)]
@@ -166,6 +203,17 @@ mod tests {
         };
         assert!(arc.meets(&beside).is_none());
         assert!(arc.meets(&arc).is_none());
+        // The line leaves the arc by a tenth on either side, the arc the line by three tenths and two.
+        let (line, arc) = ([line], [arc]);
+        assert!(passes_through(&line, 0, &arc) && passes_through(&arc, 0, &line));
+        let vague = [Piece {
+            ends: line[0].ends,
+            tangents: line[0].tangents,
+            error: 0.11,
+            doubts: Vec::new(),
+        }];
+        assert!(!passes_through(&vague, 0, &arc));
+        let arc = &arc[0];
         // A line at one height.
         let (at, along) = arc.crosses(1, y).unwrap();
         assert!(apart(at, on(0.3)) < 1e-3, "{at:?}");
