@@ -178,6 +178,31 @@ fn a_single_map_is_a_square_in_every_style() {
 }
 
 #[test]
+fn maps_on_a_sheet_are_squares_too() {
+    let result = rayleigh(("coulomb", "f_c"), 1.0, &uniform());
+    let pages = FigureWidth::NAMED.into_iter();
+    for width in pages.filter(|width| !width.has_fixed_height()) {
+        let style = FigureStyle {
+            width,
+            ..FigureStyle::default()
+        };
+        let figures = Figures::of_sweep(&result, TITLE, &[-0.5, 0.25, 0.5, 1.0]);
+        for sheet in figures.with_style(&style).draw("joint_xy").unwrap() {
+            let svg = sheet.svg();
+            let svg = Document::parse(&svg).unwrap();
+            let images = svg.descendants().filter(|one| one.has_tag_name("image"));
+            let sizes = images.map(|image| {
+                ["width", "height"]
+                    .map(|name| image.attribute(name).unwrap().parse::<f64>().unwrap())
+            });
+            // The colour bar is a picture of its own, and no square.
+            let squares = sizes.filter(|[wide, high]| (wide / high - 1.0).abs() < 2e-2);
+            assert_eq!(squares.count(), 4, "{width:?}");
+        }
+    }
+}
+
+#[test]
 fn logarithmic_colours_tell_their_floor() {
     let style = FigureStyle {
         scale: ColourScale::Log,

@@ -31,7 +31,7 @@ fn the_first_oscillator_changes_where_the_pages_say() {
         Label::Level(level) => Some([level.value, level.error]),
         _ => None,
     });
-    assert_holds(level.unwrap(), 0.023_663_0, 1e-4);
+    assert_holds(level.unwrap(), 0.023_663_0, 2e-4);
     says("python", &["0.023663", "a = 0.02419"]);
     says("first", &["0.0241902 ± 0.0000022"]);
 }

@@ -86,7 +86,7 @@ const drawNumbers = (pen, width, height, view, size) => {
   const inner = height - roomBelow(size) - top;
   const up = isLog ? powerTicks(y) : undefined;
   const left = marginFor(y, inner, size, up);
-  const plot = new Plot(pen, { left, top, width: width - left - 0.8 * size, height: inner }, view.range, y, theme, size);
+  const plot = new Plot(pen, { left, top, width: width - left - 1.8 * size, height: inner }, view.range, y, theme, size);
   plot.column = { column, place, y };
   const title = column.unit ? `${column.title} [${column.unit}]` : column.title;
   plot.axes(scene.swept.symbol, title, { grid: true, up });

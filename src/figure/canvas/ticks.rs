@@ -278,7 +278,7 @@ mod tests {
             major.map(|tick| tick.value).collect::<Vec<_>>()
         };
         assert_eq!(decades(-11.3, -8.6), [-11.0, -9.0]);
-        assert_eq!(decades(-8.4, -3.7), [-8.0, -4.0]);
+        assert_eq!(decades(-8.4, -3.7), [-8.0, -5.0]);
     }
 
     proptest! {

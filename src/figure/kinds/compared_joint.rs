@@ -186,3 +186,24 @@ fn above(method: Method, value: f64, is_first: bool, family: &Family) -> String 
         title.to_owned()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::style::{FigureStyle, FigureWidth};
+
+    #[test]
+    fn four_methods_leave_no_hole() {
+        let columns = |width| {
+            let style = FigureStyle {
+                width,
+                ..FigureStyle::default()
+            };
+            arrangement(&style.look(), 4, 110.0).0
+        };
+        for width in FigureWidth::NAMED {
+            assert_ne!(columns(width), 3, "{width:?}");
+        }
+        assert_eq!(columns(FigureWidth::Slide), 4);
+    }
+}

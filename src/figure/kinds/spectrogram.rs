@@ -221,3 +221,23 @@ fn rows_of(result: &SweepResult, asked: &SpectrumOf) -> String {
     });
     table::table(&[family.parameter(), "frequency", "power", "error"], rows)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_single_maximum_lies_across_its_column() {
+        let edges = [0.0, 0.5, 1.5, 2.0];
+        assert_eq!(
+            across_column(&[(1.0, 3.0)], &edges),
+            [(0.5, 3.0), (1.5, 3.0)]
+        );
+        assert_eq!(
+            across_column(&[(0.0, 3.0)], &edges),
+            [(0.0, 3.0), (0.5, 3.0)]
+        );
+        let run = [(0.0, 3.0), (1.0, 2.0)];
+        assert_eq!(across_column(&run, &edges), run);
+    }
+}

@@ -86,6 +86,15 @@ mod tests {
     use super::*;
 
     #[test]
+    fn what_rounding_leaves_of_a_value_is_zero() {
+        let family = crate::system::test_families::coulomb();
+        assert_eq!(at_value("joint_xy", &family, 1.019e-17), "joint_xy_0");
+        assert_eq!(at_value("joint_xy", &family, -0.005), "joint_xy_-0.005");
+        assert!(at(&family, -1e-17).ends_with(" = 0"));
+        assert!(at(&family, 1e-7).ends_with("10^{−7}"));
+    }
+
+    #[test]
     fn file_names_are_safe() {
         assert_eq!(safe("f_c/../ẋ"), "f_c_..__");
     }
