@@ -174,6 +174,24 @@ def is_in_one_screen(browser):
     browser.run("window.scrollTo(0, 0)")
 
 
+def shows_numbers(browser):
+    """Any column along the sweep: what is chosen is told at the shown value, a click goes elsewhere, the address keeps it."""
+    names = browser.run("return [...document.querySelectorAll('#numbers-choice option')].map((one) => one.value)")
+    assert {"mean_x", "sd_x", "sd_y", "solver_error"} <= set(names), names
+    legend = "return document.getElementById('numbers-legend').textContent"
+    told = set()
+    for name in names:
+        choose(browser, "#numbers-choice", name)
+        browser.until(f"return !{json.dumps(sorted(told))}.includes(document.getElementById('numbers-legend').textContent)", f"{name} is not shown")
+        told.add(browser.run(legend))
+    choose(browser, "#numbers-choice", "sd_x")
+    browser.until(f"{legend}.startsWith('standard deviation of x: ')", "the number is not told")
+    before = browser.run(legend)
+    point(browser, "#mark-canvas", 0.7, 0.5)
+    browser.until(f"{legend} !== {json.dumps(before)}", "the numbers cannot be clicked")
+    assert "numbers=sd_x" in browser.run("return location.hash"), "the address does not keep what is shown"
+
+
 def copies(browser):
     """A caption, a table and a command are copied of a panel."""
     browser.run("window.copied = []; navigator.clipboard.writeText = async (text) => { window.copied.push(text); }")
@@ -283,10 +301,11 @@ def from_disk(driver, page, axe, folder, images):
     browser.click("#table button")
     browser.until(f"return document.getElementById('says').textContent !== {json.dumps(before)}", "the table leads nowhere")
     choose(browser, "#diagram-choice", browser.run("return document.querySelector('#diagram-choice option:last-child').value"))
+    shows_numbers(browser)
     for theme in ("light", "dark"):
         choose(browser, "#theme", theme)
         is_usable(browser, axe, f"the page of a run, {theme}")
-    saves(browser, folder, ("#joint", "#section-figure", "#marginals", "#diagram"))
+    saves(browser, folder, ("#joint", "#section-figure", "#marginals", "#diagram", "#numbers"))
     # Paper is white and holds every panel and label, though the screen is dark; the screen stays as it was.
     browser.devtools("Emulation.setEmulatedMedia", media="print")
     browser.run("window.dispatchEvent(new Event('beforeprint'))")

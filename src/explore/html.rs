@@ -9,7 +9,7 @@ const FRAME: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/page.css");
 
 /// The parts of the script in the order in which they need each other.
-const SCRIPT: [&str; 20] = [
+const SCRIPT: [&str; 21] = [
     include_str!("page/unpack.js"),
     include_str!("page/numbers.js"),
     include_str!("page/colours.js"),
@@ -18,6 +18,7 @@ const SCRIPT: [&str; 20] = [
     include_str!("page/plots.js"),
     include_str!("page/data.js"),
     include_str!("page/panels.js"),
+    include_str!("page/along.js"),
     include_str!("page/words.js"),
     include_str!("page/plane.js"),
     include_str!("page/state.js"),

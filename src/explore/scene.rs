@@ -19,6 +19,8 @@ pub(super) struct Scene {
     axes: Vec<Axis>,
     /// Symbols of what moments are of: states that are no angles, quantities that are averaged, states at phases.
     moments: Vec<String>,
+    /// Their names in columns.
+    moment_names: Vec<String>,
     observables: Vec<Watched>,
     /// The complete sweep file.
     sweep_file: String,
@@ -128,6 +130,7 @@ impl Scene {
             parameters: parameters(family),
             axes: axes(family),
             moments: moments(family),
+            moment_names: family.averages().map(str::to_owned).collect(),
             observables: subject.observables.iter().map(watched).collect(),
             sweep_file: sweep.to_toml(),
             labels: labels.iter().map(|row| Label::new(row, subject)).collect(),

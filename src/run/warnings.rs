@@ -5,6 +5,11 @@ use crate::compare::{Comparison, Method};
 use crate::continuation::{Finding, Point};
 use crate::system::Family;
 
+/// What rounding leaves of a value, as a share of the sweep.
+const ROUNDING: f64 = 1e-9;
+/// Digits after the first of values that are told.
+const DIGITS: usize = 8;
+
 /// Findings of one kind: the first is quoted, the others are counted.
 struct Gathered<'a> {
     finding: &'a Finding,
@@ -42,11 +47,12 @@ pub(crate) fn warnings_of_points(family: &Family, points: &[Point]) -> Vec<Strin
 
 impl Gathered<'_> {
     fn sentence(&self, family: &Family) -> String {
-        let (first, last) = (format_number(self.values.0), format_number(self.values.1));
+        let (first, last) = (told(family, self.values.0), told(family, self.values.1));
         let words = finding_in_words(family, self.finding);
         let parameter = family.parameter();
         match self.count {
             1 => format!("{parameter} = {first}: {words}"),
+            2 => format!("{parameter} = {first}: {words} (and the like at {last})"),
             count => format!(
                 "{parameter} = {first}: {words} (and the like at {} more values up to {last})",
                 count - 1
@@ -55,12 +61,22 @@ impl Gathered<'_> {
     }
 }
 
+/// A value of the parameter without what rounding leaves: `-0.075` for -0.07500000000000001.
+fn told(family: &Family, value: f64) -> String {
+    let (from, to) = family.range();
+    if value.abs() < ROUNDING * (to - from) {
+        return format_number(0.0);
+    }
+    let short = format!("{value:.*e}", DIGITS).parse().unwrap_or(value);
+    format_number(short)
+}
+
 /// What methods say of themselves and of each other: each kind of finding once a method, at its first value.
 pub(crate) fn warnings_of_comparison(family: &Family, comparison: &Comparison) -> Vec<String> {
     let mut seen: Vec<(Method, _)> = Vec::new();
     let mut warnings = Vec::new();
     for value in &comparison.values {
-        let at = format!("{} = {}", family.parameter(), format_number(value.value));
+        let at = format!("{} = {}", family.parameter(), told(family, value.value));
         if let Some((rate, outside)) = value.leaves() {
             warnings.push(format!(
                 "{at}: generator and Monte Carlo disagree, and mass leaves Ω (at a rate of {rate:.1e}; Monte Carlo is outside for {outside:.1e} of the time); the generator's density is that of what never left, Monte Carlo's of what is inside: wider ranges tell whether that is why"
@@ -98,8 +114,8 @@ mod tests {
         let found = [
             (0.5, vec![edge(0, 0.125), off(-1.0), off(1.0)]),
             // Numbers of another length, sign and power are the same kind; another axis is not.
-            (0.25, vec![edge(0, 1e7), off(-1e-7)]),
-            (0.0, vec![edge(1, 0.5)]),
+            (0.250_000_000_000_000_06, vec![edge(0, 1e7), off(-1e-7)]),
+            (1.019e-17, vec![edge(1, 0.5)]),
         ];
         let points = found.map(|(value, findings)| Point {
             value,
@@ -122,8 +138,8 @@ mod tests {
         for (told, start) in told.iter().zip(starts) {
             assert!(told.starts_with(start), "{told}");
         }
-        assert!(told[0].ends_with("(and the like at 1 more values up to 0.25)"));
-        assert!(told[1].ends_with("(and the like at 1 more values up to 0.25)"));
+        assert!(told[0].ends_with("(and the like at 0.25)"));
+        assert!(told[1].ends_with("(and the like at 0.25)"));
         assert!(!told[2].contains("the like"));
     }
 }

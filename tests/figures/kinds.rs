@@ -357,6 +357,13 @@ out = { start = { x = 0 }, until = 'abs(x) > 1.5', survival = { from = 0.1, to =
 ";
     let (_, result) = crate::common::sweeps::swept(text, "");
     let figures = Figures::of_sweep(&result, "", &[0.2, 0.4]);
+    let sheet = figures.draw("measures").unwrap().remove(0);
+    assert!(sheet.data.contains("out_mean") && !sheet.data.contains("survival"));
+    assert!(
+        figures
+            .names()
+            .contains(&"measures_out_1_survival".to_owned())
+    );
     let figure = figures.draw("survival_out").unwrap().remove(0);
     let mut rows = figure.data.lines();
     assert_eq!(rows.next(), Some("D,time,survival,error"));

@@ -11,6 +11,7 @@
 mod common;
 
 mod captions;
+mod contact;
 mod kinds;
 mod styles;
 mod texts;

@@ -178,6 +178,31 @@ fn a_single_map_is_a_square_in_every_style() {
 }
 
 #[test]
+fn maps_on_a_sheet_are_squares_too() {
+    let result = rayleigh(("coulomb", "f_c"), 1.0, &uniform());
+    let pages = FigureWidth::NAMED.into_iter();
+    for width in pages.filter(|width| !width.has_fixed_height()) {
+        let style = FigureStyle {
+            width,
+            ..FigureStyle::default()
+        };
+        let figures = Figures::of_sweep(&result, TITLE, &[-0.5, 0.25, 0.5, 1.0]);
+        for sheet in figures.with_style(&style).draw("joint_xy").unwrap() {
+            let svg = sheet.svg();
+            let svg = Document::parse(&svg).unwrap();
+            let images = svg.descendants().filter(|one| one.has_tag_name("image"));
+            let sizes = images.map(|image| {
+                ["width", "height"]
+                    .map(|name| image.attribute(name).unwrap().parse::<f64>().unwrap())
+            });
+            // The colour bar is a picture of its own, and no square.
+            let squares = sizes.filter(|[wide, high]| (wide / high - 1.0).abs() < 2e-2);
+            assert_eq!(squares.count(), 4, "{width:?}");
+        }
+    }
+}
+
+#[test]
 fn logarithmic_colours_tell_their_floor() {
     let style = FigureStyle {
         scale: ColourScale::Log,
@@ -193,71 +218,6 @@ fn logarithmic_colours_tell_their_floor() {
             figure.caption
         );
     }
-}
-
-/// Every kind of figure of a sweep in every style, as a sheet of contact prints for the eye: `PBIF_FIGURES=folder
-/// cargo test --release --test figures -- --ignored` writes `contact.html` there, which any browser shows.
-#[test]
-#[ignore = "writes a sheet to be looked at"]
-fn a_sheet_of_all_figures_in_all_styles() {
-    let Some(folder) = std::env::var_os("PBIF_FIGURES") else {
-        return;
-    };
-    let folder = std::path::Path::new(&folder);
-    std::fs::create_dir_all(folder).unwrap();
-    let mut styles: Vec<(String, FigureStyle)> = Vec::new();
-    for width in FigureWidth::NAMED {
-        let style = FigureStyle {
-            width,
-            ..FigureStyle::default()
-        };
-        styles.push((width.name().unwrap_or_default().to_owned(), style));
-    }
-    let single = FigureStyle {
-        width: FigureWidth::Single,
-        ..FigureStyle::default()
-    };
-    type Change = fn(&mut FigureStyle);
-    let others: [(&str, Change); 4] = [
-        ("serif", |style| {
-            (style.font, style.title) = (Typeface::Serif, false);
-        }),
-        ("dark", |style| style.ground = Ground::Dark),
-        ("grey", |style| style.colours = ColourMap::Grey),
-        ("log", |style| style.scale = ColourScale::Log),
-    ];
-    styles.extend(others.map(|(name, change)| {
-        let mut style = single;
-        change(&mut style);
-        (name.to_owned(), style)
-    }));
-    let text = std::fs::read_to_string("sweeps/coulomb_fc.toml").unwrap();
-    let fewer = "sweep.points=21 cells.x.count=40 cells.y.count=60 locate.grid_check=off";
-    let (_, swept) = crate::common::sweeps::swept(&text, fewer);
-    let sweeps = [
-        ("coulomb_fc", swept, vec![-0.02, -0.01, 0.0, 0.01]),
-        ("crowded", crowded(), vec![-1.0, -0.5, 0.25, 1.0]),
-        ("bistable", bistable(), vec![-0.5, 0.0, 0.5, 1.0]),
-    ];
-    let mut page = String::from(
-        "<!doctype html><meta charset='utf-8'><title>Contact prints</title><style>body{font:14px sans-serif}\
-         figure{display:inline-block;margin:6px;vertical-align:top}img{height:260px;border:1px solid #bbb}</style>",
-    );
-    for (name, style) in &styles {
-        for (sweep, result, at) in &sweeps {
-            page += &format!("<h2>{name}: {sweep}</h2>");
-            let figures = Figures::of_sweep(result, TITLE, at).with_style(style);
-            for figure in figures.draw_all() {
-                let file = format!("{name}-{sweep}-{}.png", figure.name);
-                std::fs::write(folder.join(&file), figure.png().unwrap()).unwrap();
-                let caption = &figure.name;
-                page += &format!(
-                    "<figure><img src='{file}' alt='{caption}'><figcaption>{caption}</figcaption></figure>"
-                );
-            }
-        }
-    }
-    std::fs::write(folder.join("contact.html"), page).unwrap();
 }
 
 #[test]

@@ -132,6 +132,20 @@ fn runs_are_exported_and_nothing_is_overwritten() {
         let printed = Printed::of("read_store.py", output.unwrap());
         printed.ends(0).says(&["a = -1: highest at x = "]);
     }
+    let matplotlib = Command::new("python3")
+        .args(["-c", "import matplotlib"])
+        .status();
+    if matplotlib.is_ok_and(|status| status.success()) {
+        let mut python = Command::new("python3");
+        let python = python.arg(shipped("examples/python/redraw.py"));
+        let output = python
+            .args(["runs/a", "--out", "drawn.png"])
+            .current_dir(room.path(""))
+            .output();
+        let printed = Printed::of("redraw.py", output.unwrap());
+        printed.ends(0).says(&["PB1: a = "]);
+        assert!(room.holds("drawn.png"));
+    }
 }
 
 #[test]

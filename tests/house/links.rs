@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// The pages that are read.
-fn pages() -> Vec<PathBuf> {
+pub(super) fn pages() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut folders = vec![root.to_owned(), root.join("python")];
     let mut found = Vec::new();
@@ -25,7 +25,7 @@ fn pages() -> Vec<PathBuf> {
 }
 
 /// The text of a page without its code, which holds brackets that are no links.
-fn prose(text: &str) -> String {
+pub(super) fn prose(text: &str) -> String {
     let mut is_fenced = false;
     let mut kept = String::new();
     for line in text.lines() {

@@ -15,4 +15,5 @@ mod circles;
 mod latex;
 mod links;
 mod readme;
+mod spelling;
 mod validation;

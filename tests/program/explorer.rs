@@ -52,6 +52,81 @@ const run = new Function('document', 'fromNode', `${code}
 run(document).then((found) => process.stdout.write(JSON.stringify(found)));
 ";
 
+/// The columns of numbers along the sweep, as the page's own sources make them.
+const NUMBERS: &str = r"
+const fs = require('fs');
+const [page, ...sources] = process.argv.slice(2);
+const html = fs.readFileSync(page, 'utf8');
+const document = { getElementById: (id) => ({ textContent: html.split(`id=\x22${id}\x22>`)[1].split('</script>')[0] }) };
+const code = sources.map((name) => fs.readFileSync(name, 'utf8')).join('');
+const run = new Function('document', 'fromNode', `${code}
+  return (async () => {
+    const told = JSON.parse(new TextDecoder().decode(await readBlock('scene')));
+    const columns = columnsOf(told, told.frames);
+    const found = Object.fromEntries(columns.map((one) => [one.name, seriesOf(one, told.frames)]));
+    const first = firstColumn(told, columns).name;
+    const ranges = Object.fromEntries(columns.map((one) => [one.name, rangeOf(found[one.name], (value) => value)]));
+    return { first, found, ranges };
+  })();`);
+run(document).then((found) => process.stdout.write(JSON.stringify(found)));
+";
+
+/// A number along the sweep is what the table of points has, with its error; the axis holds it.
+#[test]
+fn the_numbers_along_the_sweep_are_those_of_the_table() {
+    if !has("node") {
+        eprintln!("skipped: Node.js is not installed");
+        return;
+    }
+    let room = Room::new();
+    let passage = "passage.out={start={x=0},until=\"abs(x)>1.5\"}";
+    room.solved(&format!(
+        "sweep sweeps/bistable.toml --quiet --out run sweep.points=7 cells.x.count=60 '{passage}'"
+    ));
+    room.done("explore run --html page.html");
+    let script = room.path("numbers.cjs");
+    std::fs::write(&script, NUMBERS).unwrap();
+    let sources = ["unpack", "numbers", "along"];
+    let sources = sources.map(|name| shipped(&format!("src/explore/page/{name}.js")));
+    let output = Command::new("node")
+        .arg(&script)
+        .arg(room.path("page.html"))
+        .args(sources)
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let page: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    // What was asked for stands first.
+    assert_eq!(page["first"], "out_mean");
+    let table = room.table("run/points.csv").0;
+    for name in ["out_mean", "out_rate", "sd_x", "mean_x"] {
+        let series = page["found"][name].as_array().unwrap();
+        assert_eq!(series.len(), table.len(), "{name}");
+        let of = |one: &serde_json::Value, key: &str| one[key].as_f64().unwrap();
+        let [low, high] = [0, 1].map(|end| page["ranges"][name][end].as_f64().unwrap());
+        for one in series {
+            let row =
+                |row: &&crate::common::table::Row| (row.number("a") - of(one, "at")).abs() < 1e-12;
+            let row = table.iter().find(row).unwrap();
+            let [value, error] =
+                [name.to_owned(), format!("{name}_error")].map(|column| row.number(&column));
+            assert_eq!(
+                [of(one, "value"), of(one, "error")],
+                [value, error],
+                "{name}"
+            );
+            assert!(
+                low < value && value < high,
+                "{name}: {value} in {low} to {high}"
+            );
+        }
+    }
+}
+
 #[test]
 fn the_code_of_the_page_reads_the_stored_densities() {
     if !has("node") {

@@ -31,4 +31,5 @@ mod sampled_transitions;
 mod slow_modes;
 mod spectra;
 mod transitions;
+mod tutorials;
 mod walls;

@@ -98,6 +98,7 @@ const connect = (page) => {
   on("section", "change", () => setSection(page, $("section").value.trim() === "" ? null : Number($("section").value.replace("−", "-"))));
   on("joint-choice", "change", () => { page.k.joint = Number($("joint-choice").value); page.options.lock = null; page.later(); });
   on("diagram-choice", "change", () => { page.k.diagram = Number($("diagram-choice").value); delete page.drawn.diagram; page.later(); });
+  on("numbers-choice", "change", () => { page.number = $("numbers-choice").value; delete page.drawn.numbers; page.later(); });
   on("plane-choice", "change", () => { page.k.plane = Number($("plane-choice").value); delete page.drawn.plane; page.later(); });
   on("theme", "change", () => setTheme(page, $("theme").value));
   on("link", "click", () => copy(location.href).then(() => flash("link", "Copied")));
@@ -105,6 +106,7 @@ const connect = (page) => {
   on("print", "click", () => window.print());
   on("help", "click", () => $("keys").showModal());
   drag($("cursor-canvas"), (x) => page.drawn.diagram && page.go(clamp(page.drawn.diagram.x.from(x), ...page.range)));
+  drag($("mark-canvas"), (x) => page.drawn.numbers && page.go(clamp(page.drawn.numbers.x.from(x), ...page.range)));
   drag($("place-canvas"), (x, y) => {
     const plot = page.drawn.plane;
     if (!plot) return;

@@ -185,6 +185,7 @@ class LivePage extends Page {
 
   redrawDiagram() {
     delete this.drawn.diagram;
+    delete this.drawn.numbers;
     this.later();
   }
 

@@ -35,6 +35,7 @@ class MapPage extends Page {
     this.source.takeRow(row);
     this.scene.labels = this.crossings(this.source.seconds[this.source.row]);
     delete this.drawn.diagram;
+    delete this.drawn.numbers;
   }
 
   /** Where the curves of the plane cross a row, by straight lines between their points: labels as a sweep's located changes have them. */

@@ -10,7 +10,7 @@ const fieldName = ({ name }, { axes }) => {
 
 class Page {
   constructor(scene, source) {
-    Object.assign(this, { scene, source, frame: null, pinned: null, paths: null, timer: null, drawn: {}, windows: {}, waiting: false, printing: false });
+    Object.assign(this, { scene, source, frame: null, pinned: null, paths: null, timer: null, drawn: {}, columns: [], number: null, windows: {}, waiting: false, printing: false });
     this.options = { log: false, lock: null, contours: true, marks: true, difference: false };
     this.section = null;
     this.joints = source.observables.map((one, k) => (one.joint ? k : -1)).filter((k) => k >= 0);
@@ -25,7 +25,7 @@ class Page {
   view(k) {
     return {
       scene: this.scene, source: this.source, frame: this.frame, pinned: this.pinned, theme: this.theme, range: this.range,
-      options: { ...this.options, difference: this.options.difference && this.pinned !== null }, section: this.section, k,
+      options: { ...this.options, difference: this.options.difference && this.pinned !== null }, section: this.section, k, column: this.columns.length ? Along.column(this) : null,
       paths: (k === this.k.joint && this.paths?.over(k)) || [],
       window: (observable, axis) => this.windowOf(observable, axis),
     };
@@ -139,6 +139,7 @@ class Page {
       if (!this.drawn.diagram) this.paint("diagram-canvas", drawDiagram, this.k.diagram);
       this.paintCursor();
     }
+    Along.draw(this);
     if (this.scene.plane) {
       if (!this.drawn.plane) this.paint("plane-canvas", drawPlane, this.k.plane);
       this.paintPlace();
@@ -170,6 +171,10 @@ class Page {
       return `Plane of ${x} and ${y}, with the regions of ${plain(one.title)}`;
     }
     if (id === "diagram-canvas") return `${plain(one.title)} over ${plain(this.scene.swept.symbol)}, with branches of peaks and valleys`;
+    if (id === "numbers-canvas") {
+      const column = Along.column(this);
+      return `${plain(column.title)} over ${plain(this.scene.swept.symbol)}; ${told(column, column.of(this.frame))} at ${at}`;
+    }
     if (id === "section-canvas") return `Section of ${plain(one.title)} at ${at}`;
     const paths = id === "joint-canvas" ? this.paths?.over(k).length : 0;
     return `${plain(one.title)} at ${at}: ${countWords(this.frame.found[k])}${paths ? `; sample paths drawn over it: ${paths}` : ""}`;
@@ -194,12 +199,19 @@ class Page {
 
   /** Where the shown state lies in the plane, over what does not change with it. */
   paintPlace() {
-    const canvas = $(this.printing ? "plane-canvas" : "place-canvas");
+    this.paintOver("plane", "place-canvas", drawPlaneCursor);
+  }
+
+  /** What changes with the shown state, over the plot of a panel, which does not. */
+  paintOver(panel, id, draw) {
+    const canvas = $(this.printing ? `${panel}-canvas` : id);
     const { width, height } = canvas.parentElement.getBoundingClientRect();
-    const plot = this.drawn.plane;
+    const plot = this.drawn[panel];
     if (!plot || width < 20) return;
     const pen = new CanvasPen(canvas, width, height, window.devicePixelRatio || 1, this.printing);
-    drawPlaneCursor(new Plot(pen, plot.rect, plot.ranges.x, plot.ranges.y, this.theme, this.size), this.view(this.k.plane));
+    const over = new Plot(pen, plot.rect, plot.ranges.x, plot.ranges.y, this.theme, this.size);
+    over.column = plot.column;
+    draw(over, this.view(this.k[panel] ?? 0));
   }
 
   /** Everything that is said in words. */
@@ -249,6 +261,7 @@ class Page {
       [scene.swept.name]: frame.value,
       joint: this.joints.length > 1 ? source.observables[k.joint].name : null,
       diagram: this.singles.length > 1 ? source.observables[k.diagram].name : null,
+      numbers: this.columns.some(({ name }) => name === this.number) ? this.number : null,
       plane: scene.plane && k.plane ? source.observables[k.plane].name : null,
       log: options.log ? 1 : null, lock: options.lock, contours: options.contours ? null : 0, marks: options.marks ? null : 0,
       pin: pinned?.value, difference: options.difference ? 1 : null, section,
@@ -272,6 +285,7 @@ class Page {
     this.options.difference = state.difference === "1";
     this.options.lock = numeric(state.lock);
     this.section = numeric(state.section);
+    this.number = state.numbers ?? null;
     for (const name of ["log", "contours", "marks", "difference"]) $(name).checked = this.options[name];
     $("lock").checked = this.options.lock !== null;
     $("section").value = this.section ?? "";
@@ -303,12 +317,12 @@ class Page {
 
   /** What a panel shows: its density, what draws it, its size, and its name as that of a file. */
   panel(panel) {
-    const isWhole = panel === "diagram" || panel === "plane";
-    const k = isWhole ? this.k[panel] : panel === "joint" || panel === "section" ? this.k.joint : Number(panel.slice(9));
-    const drawing = { joint: drawJoint, diagram: drawDiagram, section: drawSection, plane: drawPlane }[panel] ?? drawMarginal;
+    const isWhole = panel === "diagram" || panel === "plane" || panel === "numbers";
+    const k = isWhole ? this.k[panel] ?? 0 : panel === "joint" || panel === "section" ? this.k.joint : Number(panel.slice(9));
+    const drawing = { joint: drawJoint, diagram: drawDiagram, section: drawSection, plane: drawPlane, numbers: drawNumbers }[panel] ?? drawMarginal;
     const canvas = $(panel.startsWith("marginal") ? panel : `${panel}-canvas`);
     const { width, height } = canvas.parentElement.getBoundingClientRect();
-    const observable = this.source.observables[k];
+    const observable = panel === "numbers" ? Along.column(this) : this.source.observables[k];
     const at = isWhole ? "" : `_${this.scene.swept.name}_${this.frame.value}`;
     return { k, drawing, width, height, observable, name: `${panel.replace(/-\d+$/, "")}_${observable.name}${at}`, id: canvas.id };
   }
@@ -318,6 +332,7 @@ class Page {
     const { k, observable } = this.panel(panel);
     const density = this.frame.densities[k];
     if (panel === "plane") return planeCsv(this.scene);
+    if (panel === "numbers") return numbersCsv(this.scene, observable, this.source.frames);
     if (panel === "diagram") return featuresCsv(this.scene, this.source, k);
     return density ? densityCsv(this.scene, observable, density) : "";
   }
@@ -338,7 +353,7 @@ class Page {
     const held = this.scene.parameters.filter(({ value }) => value !== null).map(({ symbol, value }) => `${plain(symbol)} = ${plainNumber(value, 6)}`);
     const labels = this.scene.labels.filter(({ kind }) => kind === "bifurcation")
       .map(({ label, value, error }) => `${label} at ${plainNumber(value, 8)} ± ${plainNumber(error, 2)}`);
-    const marked = panel === "diagram" && labels.length ? ` Marked: ${labels.join("; ")}.` : "";
+    const marked = (panel === "diagram" || panel === "numbers") && labels.length ? ` Marked: ${labels.join("; ")}.` : "";
     return `${this.scene.title}. ${this.describe(id, k)}.${marked} Equations: ${this.scene.model.equations.map(({ text }) => text).join("; ")}; `
       + `${held.join(", ")}. Method: ${this.frame.method}. Computed with ${this.scene.program}.`;
   }
@@ -347,6 +362,7 @@ class Page {
   commandOf(panel) {
     const { observable } = this.panel(panel);
     if (panel === "plane") return `pbif plot RUN --only map_${observable.name}`;
+    if (panel === "numbers") return Along.command(observable);
     const own = observable.field === null ? `joint_${observable.name}` : `field_${fieldName(observable, this.scene)}`;
     const kinds = { joint: own, section: `section_${observable.name}`, diagram: `diagram_${observable.name}` };
     const at = panel === "diagram" ? "" : ` --at ${this.frame.value}`;

@@ -23,12 +23,12 @@ class Plot {
   }
 
   /** Frame, ticks and names of the axes. */
-  axes(xName, yName, { grid = false } = {}) {
+  axes(xName, yName, { grid = false, up = null } = {}) {
     const { pen, rect, theme, size } = this;
     const { left, top, width, height } = rect;
     const bottom = top + height;
     const across = ticks(...this.ranges.x, width / (4.5 * size));
-    const up = ticks(...this.ranges.y, height / (3 * size));
+    const upright = up ?? upTicks(this.ranges.y, height, size);
     const thin = { colour: theme.faint, width: 1 };
     tickWords(across).forEach((word, i) => {
       const x = this.x.to(across.values[i]);
@@ -36,22 +36,28 @@ class Plot {
       pen.line([[x, bottom], [x, bottom + 4]], thin);
       pen.text(x, bottom + 5 + size, word, { colour: theme.ink, size });
     });
-    tickWords(up).forEach((word, i) => {
-      const y = this.y.to(up.values[i]);
+    upright.words.forEach((word, i) => {
+      const y = this.y.to(upright.values[i]);
       if (grid) pen.line([[left, y], [left + width, y]], { colour: theme.grid, width: 1 });
       pen.line([[left - 4, y], [left, y]], thin);
       pen.text(left - 7, y + 0.35 * size, word, { colour: theme.ink, size, align: "right" });
     });
     pen.line([[left, top], [left + width, top], [left + width, bottom], [left, bottom], [left, top]], thin);
     pen.text(left + 0.5 * width, bottom + 2.6 * size + 4, xName, { colour: theme.ink, size: 1.1 * size });
-    pen.text(left - marginFor(this.ranges.y, height, size) + 1.1 * size, top + 0.5 * height, yName,
+    pen.text(left - marginFor(this.ranges.y, height, size, upright) + 1.1 * size, top + 0.5 * height, yName,
       { colour: theme.ink, size: 1.1 * size, turned: true });
   }
 }
 
+/** Ticks of an upright axis, with what stands beside them. */
+const upTicks = (range, height, size) => {
+  const found = ticks(...range, height / (3 * size));
+  return { values: found.values, words: tickWords(found) };
+};
+
 /** Room that an upright axis needs to its left. */
-const marginFor = (range, height, size) => {
-  const words = tickWords(ticks(...range, height / (3 * size)));
+const marginFor = (range, height, size, up = upTicks(range, height, size)) => {
+  const { words } = up;
   return Math.max(...words.map((word) => textWidth(word, size)), size) + 2.2 * size + 8;
 };
 

@@ -31,6 +31,11 @@ pub(super) fn ticks(from: f64, to: f64, most: usize) -> Ticks {
         return ticks;
     }
     let (step, parts) = step(from, to, most.max(2));
+    ticks_at(from, to, (step, parts)).unwrap_or_else(|| outermost(from, to, step))
+}
+
+/// The multiples of a step with labels, and its parts without; `None` where fewer than two multiples lie inside.
+fn ticks_at(from: f64, to: f64, (step, parts): (f64, i64)) -> Option<Ticks> {
     let exponent = common_exponent(from, to, step);
     let scale = 10f64.powi(exponent);
     // The step is 1, 2 or 5 times a power of ten, which fixes the decimals.
@@ -41,7 +46,7 @@ pub(super) fn ticks(from: f64, to: f64, most: usize) -> Ticks {
         let last = ((to + slack) / step).floor() as i64;
         first..=last
     };
-    let major = multiples(step)
+    let major: Vec<Tick> = multiples(step)
         .map(|multiple| {
             let value = multiple as f64 * step;
             Tick {
@@ -55,11 +60,34 @@ pub(super) fn ticks(from: f64, to: f64, most: usize) -> Ticks {
         .filter(|multiple| multiple.rem_euclid(parts) != 0)
         .map(|multiple| multiple as f64 * part)
         .collect();
-    Ticks {
+    (major.len() > 1).then_some(Ticks {
         major,
         minor,
         exponent,
+    })
+}
+
+/// Ticks of an axis on which two labels have room and a step has but one multiple inside, which tells no scale: labels
+/// at the first and the last multiple of a shorter step.
+fn outermost(from: f64, to: f64, step: f64) -> Ticks {
+    // The next shorter round step, of which more than the two that have room lie inside.
+    let power = 10f64.powf(step.log10().floor());
+    let shorter = if step > 4.0 * power && step < 6.0 * power {
+        0.4 * step
+    } else {
+        0.5 * step
+    };
+    let mut ticks = ticks_at(from, to, (shorter, 1)).unwrap_or(Ticks {
+        major: Vec::new(),
+        minor: Vec::new(),
+        exponent: 0,
+    });
+    if ticks.major.len() > 2 {
+        let last = ticks.major.len() - 1;
+        let between = ticks.major.drain(1..last).map(|tick| tick.value);
+        ticks.minor = between.collect();
     }
+    ticks
 }
 
 /// Ticks at π, π/2 or π/4, of an axis that goes around once or a few times from one multiple of π to another: that of
@@ -120,9 +148,16 @@ pub(super) fn decades(from: f64, to: f64, most: usize) -> Ticks {
         .filter(|&power| inside(f64::from(power)))
         .count();
     let every = count.div_ceil(most.max(1)).max(1) as i32;
+    // Multiples of the step are labelled, or, where that is a single one, the first power and what follows on it.
+    let multiples = powers.clone().filter(|&power| inside(f64::from(power)));
+    let (first, multiples) = (
+        multiples.clone().next().unwrap_or_default(),
+        multiples.filter(|power| power.rem_euclid(every) == 0),
+    );
+    let offset = if multiples.count() < 2 { first } else { 0 };
     let (major, others): (Vec<i32>, Vec<i32>) = powers
         .clone()
-        .partition(|power| power.rem_euclid(every) == 0);
+        .partition(|power| (power - offset).rem_euclid(every) == 0);
     let major = major
         .into_iter()
         .map(f64::from)
@@ -234,6 +269,18 @@ mod tests {
         assert_eq!(ticks.minor.len(), 26);
     }
 
+    #[test]
+    fn an_axis_with_little_room_has_two_labels() {
+        assert_eq!(labels(-0.35, 0.35, 2), ["−0.2", "0.2"]);
+        assert_eq!(labels(-0.45, 0.45, 2), ["−0.4", "0.4"]);
+        let decades = |from: f64, to: f64| {
+            let major = decades(from, to, 2).major.into_iter();
+            major.map(|tick| tick.value).collect::<Vec<_>>()
+        };
+        assert_eq!(decades(-11.3, -8.6), [-11.0, -9.0]);
+        assert_eq!(decades(-8.4, -3.7), [-8.0, -5.0]);
+    }
+
     proptest! {
         #[test]
         fn ticks_are_few_ascending_inside_and_labelled_apart(
@@ -242,7 +289,7 @@ mod tests {
             let to = from + 10f64.powf(exponent);
             let ticks = ticks(from, to, most);
             let slack = 1e-6 * (to - from);
-            prop_assert!(ticks.major.len() <= most);
+            prop_assert!((2..=most).contains(&ticks.major.len()), "{ticks:?}");
             for pair in ticks.major.windows(2) {
                 prop_assert!(pair[0].value < pair[1].value);
                 prop_assert_ne!(&pair[0].label, &pair[1].label);

@@ -20,6 +20,8 @@ use crate::figure::print::{Figure, Print};
 const SIDE: f64 = 165.0;
 /// Narrowest and widest map where the page is given.
 const SMALLEST: f64 = 124.0;
+/// The same on a slide.
+const SMALLEST_ON_SLIDE: f64 = 88.0;
 const TALLEST: f64 = 230.0;
 /// Gaps between maps.
 const BETWEEN: (f64, f64) = (12.0, 12.0);
@@ -140,7 +142,14 @@ fn arrangement(look: &Look, methods: usize, beside: f64) -> (usize, f64) {
         let gaps = (columns - 1) as f64 * BETWEEN.0;
         look.fill(SIDE, beside + gaps) / columns as f64
     };
-    let columns = Look::columns(methods, |columns| side(columns) >= SMALLEST);
+    // A slide is low: one row of four maps stands on it, and not two.
+    let least = if look.has_fixed_height {
+        SMALLEST_ON_SLIDE
+    } else {
+        SMALLEST
+    };
+    let columns = Look::columns(methods, |columns| side(columns) >= least);
+    let columns = Look::even_columns(methods, columns);
     (columns, side(columns).min(TALLEST))
 }
 
@@ -175,5 +184,26 @@ fn above(method: Method, value: f64, is_first: bool, family: &Family) -> String 
         format!("{}: {title}", names::at(family, value))
     } else {
         title.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::style::{FigureStyle, FigureWidth};
+
+    #[test]
+    fn four_methods_leave_no_hole() {
+        let columns = |width| {
+            let style = FigureStyle {
+                width,
+                ..FigureStyle::default()
+            };
+            arrangement(&style.look(), 4, 110.0).0
+        };
+        for width in FigureWidth::NAMED {
+            assert_ne!(columns(width), 3, "{width:?}");
+        }
+        assert_eq!(columns(FigureWidth::Slide), 4);
     }
 }

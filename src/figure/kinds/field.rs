@@ -66,7 +66,7 @@ fn sketches<'a>(sweep: &Sweep<'a>) -> Vec<Sketch<'a>> {
         };
         all.push(Sketch::new(name.as_str(), sheet));
         all.extend(sweep.chosen.iter().map(|&point| {
-            let name = names::at_value(&name, point.value);
+            let name = names::at_value(&name, sweep.family(), point.value);
             Sketch::new(name, move |print| draw_maps(result, &[point], asked, print))
         }));
     }

@@ -76,7 +76,7 @@ impl<'a> Sweep<'a> {
     ) -> Vec<Sketch<'a>> {
         let points = self.chosen.iter();
         let single = |point: &&'a Point| {
-            let name = names::at_value(name, point.value);
+            let name = names::at_value(name, self.family(), point.value);
             self.joint(name, way, &[point], draw)
         };
         points.map(single).collect()

@@ -78,7 +78,7 @@ fn draw(result: &SweepResult, chosen: &[&Point], print: &Print<'_>) -> Drawn {
     for number in 0..result.subject.observables.len() {
         all.extend(marginal(result, chosen, number, print));
     }
-    let page = draw_overlaid(&values_of(&result.subject.family, chosen), &all, print)?;
+    let page = draw_overlaid(&values_of(&result.subject.family, chosen), (0, &all), print)?;
     let values = chosen.iter().map(|point| point.value);
     let at = caption::at(&result.subject.family, values);
     let seen = format!("Steady-state marginal densities{at}.");
@@ -124,10 +124,10 @@ pub(super) fn values_of(family: &Family, points: &[&Point]) -> Vec<String> {
 }
 
 /// Draws a panel for each of some axes, in a legend the words for the densities by their numbers; `None` without a
-/// panel.
+/// panel. So many panels stand on earlier pages.
 pub(super) fn draw_overlaid(
     words: &[String],
-    all: &[Overlaid<'_>],
+    (first, all): (usize, &[Overlaid<'_>]),
     print: &Print<'_>,
 ) -> Option<Page> {
     let look = &print.look;
@@ -174,7 +174,11 @@ pub(super) fn draw_overlaid(
         let across = Scale::horizontal(look, one.window, wide, &one.axis);
         draw_panel(&page, (one, &across), rect);
         if has_letters {
-            write_above(&page, rect, with_letter(look, number, one.above.clone()));
+            write_above(
+                &page,
+                rect,
+                with_letter(look, first + number, one.above.clone()),
+            );
         }
     }
     Some(page)

@@ -1,7 +1,7 @@
 //! Measures along the sweep, the numbers of the process at each value, each with the band of its error: all below each
 //! other (`measures`), or one by its name (`measures_sd_x`). What is zero all along is left out.
 
-use super::{Drawn, Kind, Sketch};
+use super::{Drawn, Kind, Sketch, survival};
 use crate::continuation::measure::{
     EDGE_MASS, ESCAPE_RATE, FACTORISATIONS, MAP_STEP, NEGATIVE_MASS, NUMERICAL_DIFFUSION,
 };
@@ -40,6 +40,14 @@ pub(super) const KIND: Kind = Kind {
             })
         });
         let singles: Vec<Sketch<'_>> = singles.collect();
+        // A survival curve is no panel of many numbers.
+        let family = sweep.family();
+        let is_on_sheet = |one: &MeasureSeries| {
+            let levels = &family.questions.levels;
+            !survival::shows(family, &one.name)
+                || levels.iter().any(|level| level.measure == one.name)
+        };
+        let all: Vec<MeasureSeries> = all.into_iter().filter(is_on_sheet).collect();
         let sheet = Sketch::new("measures", move |print| draw(result, &all, (AMONG, print)));
         std::iter::once(sheet).chain(singles).collect()
     },

@@ -54,6 +54,7 @@ fn draw(result: &SweepResult, axis: usize, chosen: &[&Point], print: &Print<'_>)
     let ordinate = names::density(family, Observable::Marginal(axis));
     let (count, share) = (chosen.len(), print.share(chosen.len()));
     let mut panels = Vec::new();
+    let first = share.start;
     for point in &chosen[share] {
         let densities = phases.iter().enumerate();
         let densities = densities.filter_map(|(place, (number, _))| {
@@ -63,7 +64,7 @@ fn draw(result: &SweepResult, axis: usize, chosen: &[&Point], print: &Print<'_>)
         panels.extend(panel.map(|panel| panel.under(names::at(family, point.value))));
     }
     let words: Vec<String> = phases.iter().map(|(_, words)| words.clone()).collect();
-    let page = draw_overlaid(&words, &panels, print)?;
+    let page = draw_overlaid(&words, (first, &panels), print)?;
     let values = chosen.iter().map(|point| point.value);
     let seen = format!(
         "Densities {} at phases of the forcing, in periods after t = 0{}.",

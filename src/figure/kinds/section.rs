@@ -106,7 +106,7 @@ fn draw_lines(
     }
     draw_overlaid(
         &values_of(&joint.result.subject.family, joint.points),
-        &panels,
+        (0, &panels),
         print,
     )
 }

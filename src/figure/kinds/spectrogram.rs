@@ -112,7 +112,8 @@ fn draw(result: &SweepResult, asked: &SpectrumOf, print: &Print<'_>) -> Drawn {
     panel.draw(&[(range.0, from), (range.1, to)], Shape::Image(picture));
     labels.draw_lines(look, &panel, (from, to));
     for run in &peaks {
-        panel.mark(run, legend::peaks(run));
+        let run = across_column(run, &edges);
+        panel.mark(&run, legend::peaks(&run));
     }
     frame::border(&page, map);
     labels.draw_texts(&page, map);
@@ -131,6 +132,18 @@ fn draw(result: &SweepResult, asked: &SpectrumOf, print: &Print<'_>) -> Drawn {
         caption::of_sweep(result, seen, &marked),
         rows_of(result, asked),
     ))
+}
+
+/// A run of a single value as a line across its column; longer ones as they are.
+fn across_column(run: &[(f64, f64)], edges: &[f64]) -> Vec<(f64, f64)> {
+    let [(value, peak)] = *run else {
+        return run.to_vec();
+    };
+    let column = edges
+        .windows(2)
+        .find(|ends| ends[0] <= value && value <= ends[1]);
+    let edges = column.unwrap_or_default().iter();
+    edges.map(|&edge| (edge, peak)).collect()
 }
 
 /// The place below a value among some, ascending, and how far the value is on the way to the next.
@@ -207,4 +220,24 @@ fn rows_of(result: &SweepResult, asked: &SpectrumOf) -> String {
         rows.collect::<Vec<_>>()
     });
     table::table(&[family.parameter(), "frequency", "power", "error"], rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_single_maximum_lies_across_its_column() {
+        let edges = [0.0, 0.5, 1.5, 2.0];
+        assert_eq!(
+            across_column(&[(1.0, 3.0)], &edges),
+            [(0.5, 3.0), (1.5, 3.0)]
+        );
+        assert_eq!(
+            across_column(&[(0.0, 3.0)], &edges),
+            [(0.0, 3.0), (0.5, 3.0)]
+        );
+        let run = [(0.0, 3.0), (1.0, 2.0)];
+        assert_eq!(across_column(&run, &edges), run);
+    }
 }

@@ -8,7 +8,7 @@ use crate::continuation::{Point, SweepResult};
 use crate::figure::canvas::symbols;
 use crate::figure::parts::caption;
 use crate::figure::print::Print;
-use crate::system::PassageQuestion;
+use crate::system::{Family, PassageQuestion};
 
 /// Fewer times are no curve.
 const LEAST: usize = 3;
@@ -29,6 +29,24 @@ fn sketches<'a>(sweep: &Sweep<'a>) -> Vec<Sketch<'a>> {
         Sketch::new(name, move |print| draw(result, &chosen, passage, print))
     });
     figures.collect()
+}
+
+/// Whether a measure is a probability that a figure of this kind shows.
+pub(super) fn shows(family: &Family, measure: &str) -> bool {
+    let passages = family.questions.passages.iter();
+    let mut curves = passages.filter(|one| one.times.len() >= LEAST);
+    let is_of = |passage: &PassageQuestion| {
+        passage
+            .times
+            .iter()
+            .any(|time| of(passage, *time) == measure)
+    };
+    curves.any(is_of)
+}
+
+/// The name of the probability that a passage lasts longer than a time.
+fn of(passage: &PassageQuestion, time: f64) -> String {
+    PASSAGE_SURVIVAL.name(&format!("{}_{time}", passage.name))
 }
 
 fn draw(
@@ -65,7 +83,7 @@ fn draw(
 /// The logarithms of the times, and the probabilities with their errors.
 fn survival(point: &Point, passage: &PassageQuestion) -> Vec<(f64, (f64, f64))> {
     let at = |time: &f64| {
-        let name = PASSAGE_SURVIVAL.name(&format!("{}_{time}", passage.name));
+        let name = of(passage, *time);
         let known = point.report.measures.iter().find(|one| one.name == name)?;
         let known = (known.value, known.error.unwrap_or(f64::NAN));
         Some((time.log10(), known))

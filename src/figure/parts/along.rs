@@ -88,7 +88,7 @@ pub(crate) fn draw(
         let long = letters::text_width(look, up.title(), TEXT, false);
         is_above |= long > high + BETWEEN;
     }
-    let above = if is_above { 1.3 * TEXT } else { 0.0 };
+    let above = if is_above { 1.4 * TEXT } else { 0.0 };
     let labels_wide = panels.iter().map(|(_, up, _)| up.label_width());
     let labels_wide = labels_wide.fold(0.0, f64::max);
     let room = if is_above {
@@ -168,7 +168,7 @@ fn write_title(
     (is_above, labels_wide): (bool, f64),
 ) {
     if is_above {
-        let place = (rect.left, rect.top - 0.65 * TEXT);
+        let place = (rect.left, rect.top - 0.8 * TEXT);
         let text = lettering(title, HPos::Left);
         let size = text.size * (rect.width / title_wide).min(1.0);
         return page.text(place, Lettering { size, ..text });

@@ -72,7 +72,8 @@ pub(crate) fn number(value: f64) -> String {
 
 /// ` at f_c = -0.02, 0 and 0.01`.
 pub(crate) fn at(family: &Family, values: impl Iterator<Item = f64>) -> String {
-    let values: Vec<String> = values.map(number).collect();
+    let values = values.map(|value| number(names::not_of_rounding(family, value)));
+    let values: Vec<String> = values.collect();
     let values = match values.as_slice() {
         [] => return String::new(),
         [rest @ .., last] if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),

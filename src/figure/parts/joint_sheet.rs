@@ -23,7 +23,7 @@ const BETWEEN: f64 = 14.0;
 const BETWEEN_LABELS: f64 = 8.0;
 /// The densities of a sheet share their scale unless the largest values differ by more than this factor.
 const COMPARABLE: f64 = 3.0;
-const TALLEST_SMALL: f64 = 270.0;
+const TALLEST_SMALL: f64 = 400.0;
 /// Maps of a sheet of one column at most, where letters cost the second one.
 const MOST_IN_A_TOWER: usize = 3;
 /// Digits of values where there is little room.

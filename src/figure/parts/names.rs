@@ -4,6 +4,9 @@ use crate::density::Observable;
 use crate::figure::canvas::symbols;
 use crate::system::{Family, Fluctuating};
 
+/// What rounding leaves of a value, as a share of the sweep.
+const ROUNDING: f64 = 1e-9;
+
 /// Symbol of the swept parameter.
 pub(crate) fn parameter(family: &Family) -> String {
     symbols::variable(family.symbol())
@@ -31,7 +34,17 @@ pub(crate) fn density(family: &Family, observable: Observable) -> String {
 
 /// `α = −0.5`.
 pub(crate) fn at(family: &Family, value: f64) -> String {
-    format!("{} = {}", parameter(family), symbols::value(value))
+    let value = symbols::value(not_of_rounding(family, value));
+    format!("{} = {value}", parameter(family))
+}
+
+/// A value of the parameter as figures have it: what is less than rounding leaves of the sweep's values is zero.
+pub(crate) fn not_of_rounding(family: &Family, value: f64) -> f64 {
+    let (from, to) = family.range();
+    if value.abs() < ROUNDING * (to - from) {
+        return 0.0;
+    }
+    value
 }
 
 /// Name of an observable in file names: `x`, `xy`.
@@ -40,8 +53,9 @@ pub(crate) fn file(family: &Family, observable: Observable) -> String {
 }
 
 /// Name of the figure of one of several values: `joint_xy_-0.5`.
-pub(crate) fn at_value(name: &str, value: f64) -> String {
-    format!("{name}_{}", safe(&symbols::rounded(value).to_string()))
+pub(crate) fn at_value(name: &str, family: &Family, value: f64) -> String {
+    let value = symbols::rounded(not_of_rounding(family, value));
+    format!("{name}_{}", safe(&value.to_string()))
 }
 
 /// Symbol of a parameter, swept or not.
@@ -70,6 +84,15 @@ fn safe(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_rounding_leaves_of_a_value_is_zero() {
+        let family = crate::system::test_families::coulomb();
+        assert_eq!(at_value("joint_xy", &family, 1.019e-17), "joint_xy_0");
+        assert_eq!(at_value("joint_xy", &family, -0.005), "joint_xy_-0.005");
+        assert!(at(&family, -1e-17).ends_with(" = 0"));
+        assert!(at(&family, 1e-7).ends_with("10^{−7}"));
+    }
 
     #[test]
     fn file_names_are_safe() {

@@ -14,7 +14,7 @@ use crate::system::{LANES, System};
 /// Trajectories of a time average: every core has several batches, and burn-in stays a small part.
 const TRAJECTORIES: f64 = 2048.0;
 
-/// Burn-in in autocorrelation times: e⁻¹² = 6e-6 of the start is left.
+/// Autocorrelation times of burn-in: e⁻¹² = 6e-6 of the start is left.
 const BURN_IN: f64 = 12.0;
 
 /// The same under a forcing: there means oscillate, which forget at half of the rate at which variances do.
