@@ -15,8 +15,6 @@ use pbif::system::{
 };
 use pbif::topology::{DetectOptions, PersistenceDetector};
 
-use crate::common::sweeps::{rows as rows_of, swept};
-
 /// Drift of a system with one parameter.
 type Drift = fn(f64, &[f64], &mut [f64]);
 
@@ -472,37 +470,5 @@ fn a_jump_that_moves_through_the_cells_leaves_no_value_located_but_what_cells_sh
             let holds = (row.value - 0.5).abs() <= row.error;
             assert!(is_told || holds || row.zero.is_none(), "{}", words(&rows));
         }
-    }
-}
-
-#[test]
-fn a_stage_between_two_folds_of_one_step_has_its_rows() {
-    // Peaks are zeros of the drift a + q(x), so that they are born and vanish at the extrema of -q: -0.00206, -0.00160
-    // and -0.00124 all lie within a step of the sweep, and one of them is found without the others.
-    let text = r#"
-system.equations = { x = "a + b x - 0.328 x^2 + 0.759 x^3 - 0.224 x^4 - 0.7 x^5" }
-system.noise = { x = "0.652" }
-system.parameters = { b = 0.046 }
-sweep = { parameter = "a", from = -0.5, to = 0.5, points = 11 }
-cells.x = { from = -2.5, to = 2.5, count = 160 }
-"#;
-    let (_, result) = swept(text, "");
-    let q = |x: f64| {
-        0.046 * x - 0.328 * x.powi(2) + 0.759 * x.powi(3) - 0.224 * x.powi(4) - 0.7 * x.powi(5)
-    };
-    let at = |k: i32| -2.5 + 1e-4 * f64::from(k);
-    let is_turn = |k: &i32| (q(at(*k)) - q(at(k - 1))) * (q(at(k + 1)) - q(at(*k))) < 0.0;
-    let mut exact: Vec<f64> = (1..50_000).filter(is_turn).map(|k| -q(at(k))).collect();
-    exact.retain(|fold| fold.abs() < 0.5);
-    exact.sort_by(f64::total_cmp);
-    let rows = rows_of(&result, "x");
-    assert_eq!(rows.len(), exact.len(), "{exact:?}");
-    for (row, exact) in rows.iter().zip(exact) {
-        assert_eq!(row.status(), BifurcationStatus::Located);
-        assert!(
-            (row.value - exact).abs() <= row.error,
-            "{} for {exact}",
-            row.value
-        );
     }
 }
