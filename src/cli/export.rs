@@ -28,10 +28,7 @@ pub(super) fn run(arguments: &ExportArguments) -> Result<Outcome, CommandError> 
     let stored = Stored::read(&arguments.run, &[], &[], true)?;
     let result = &stored.result;
     if let Some(parent) = out.parent() {
-        std::fs::create_dir_all(parent).map_err(|source| RunError::Write {
-            path: parent.to_owned(),
-            source,
-        })?;
+        std::fs::create_dir_all(parent).map_err(RunError::writing(parent))?;
     }
     let title = &stored.spec.settings.title;
     export(result, title, arguments.format, &out)?;
