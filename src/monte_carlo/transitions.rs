@@ -11,10 +11,11 @@ use super::batch::{Limits, Purpose, key};
 use super::crossings::{Chances, Crossings, TransitionCounts};
 use super::ergodic::Starts;
 use super::estimate::BLOCKS;
-use super::exit_times::{ExitNumber, differences, jackknife};
+use super::exit_times::{ExitNumber, differences};
 use super::halving::over_two_steps;
 use super::walk::Border;
 use crate::cancellation::{Cancellation, Cancelled};
+use crate::numerics::jackknife;
 use crate::sampling::{Integrator, NormalStream, Stepper};
 use crate::space::CellSpace;
 use crate::system::{BoundQuantity, LANES, Lanes, System};
@@ -98,8 +99,11 @@ impl Transitions {
         let (shifted, fine): (Vec<_>, Vec<_>) = without.unzip();
         std::array::from_fn(|index| ExitNumber {
             value: values[index],
-            sampling: jackknife(&fine, index),
-            step: (shifts[index], jackknife(&shifted, index)),
+            sampling: jackknife(fine.iter().map(|numbers| numbers[index])),
+            step: (
+                shifts[index],
+                jackknife(shifted.iter().map(|numbers| numbers[index])),
+            ),
         })
     }
 }

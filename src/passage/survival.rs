@@ -11,6 +11,7 @@ use sprs::CsMat;
 use super::{PassageError, dot};
 use crate::cancellation::Cancellation;
 use crate::generator::AbsorbingGenerator;
+use crate::numerics::bisected;
 use crate::space::CellSpace;
 use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions};
 
@@ -241,16 +242,7 @@ impl ReducedModel {
             }
             high *= 2.0;
         }
-        let mut low = 0.0;
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if self.at(middle)[start] > share {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        0.5 * (low + high)
+        bisected((0.0, high), 60, |middle| self.at(middle)[start] > share)
     }
 }
 

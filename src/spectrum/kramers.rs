@@ -8,6 +8,7 @@
 //! ln A(δ) = 1/(2π) ∫ ln(1 - e^{-δ (λ² + 1/4)}) dλ/(λ² + 1/4).
 //! What both leave out is of the order of T/ΔV.
 
+use crate::numerics::bisected;
 use crate::system::DampedParticle;
 
 /// Places along the range at which the force's sign is looked at.
@@ -109,17 +110,9 @@ fn zeros(particle: &DampedParticle, (from, to): (f64, f64)) -> Vec<f64> {
 }
 
 /// Where a condition changes between two places.
-fn halved(condition: impl Fn(f64) -> bool, mut low: f64, mut high: f64) -> f64 {
+fn halved(condition: impl Fn(f64) -> bool, low: f64, high: f64) -> f64 {
     let first = condition(low);
-    for _ in 0..100 {
-        let middle = 0.5 * (low + high);
-        if condition(middle) == first {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    0.5 * (low + high)
+    bisected((low, high), 100, |middle| condition(middle) == first)
 }
 
 fn panel(f: &impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
