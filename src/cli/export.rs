@@ -22,7 +22,7 @@ pub(super) fn run(arguments: &ExportArguments) -> Result<Outcome, CommandError> 
         );
         let found =
             Diagnostic::new(title).remedy("give another place with `--out PATH`, or remove it");
-        return Err(CommandError::Input(found.into()));
+        return Err(found.into());
     }
     check_place(&out)?;
     let stored = Stored::read(&arguments.run, &[], &[], true)?;

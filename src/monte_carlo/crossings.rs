@@ -6,7 +6,7 @@
 //! the same of the bridge with its time turned round.
 
 use super::batch::{Limits, Purpose};
-use super::walk::{Border, Chance};
+use super::walk::{Border, Chance, Meeting, StepLevels};
 use crate::sampling::Stepper;
 use crate::system::{LANES, Lanes};
 

@@ -131,11 +131,7 @@ pub fn transitions(
     cancellation: &Cancellation,
 ) -> Result<Transitions, MonteCarloError> {
     MonteCarloError::check(system, space)?;
-    for (name, value) in [("time step", run.time_step), ("burn-in", run.burn_in)] {
-        if !(value.is_finite() && value > 0.0) {
-            return Err(MonteCarloError::Time { name, value });
-        }
-    }
+    MonteCarloError::check_times([("time step", run.time_step), ("burn-in", run.burn_in)])?;
     if states.iter().any(|state| state.len() != space.dimension()) {
         return Err(MonteCarloError::Start);
     }

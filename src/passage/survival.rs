@@ -78,8 +78,7 @@ pub(super) fn models(
                 row = solver.expected(&stage, &row)?.values();
             }
         }
-        work.factorisations += solver.work.factorisations;
-        work.passes += solver.work.passes;
+        work.add(solver.work);
     }
     // The other scheme is projected on the same vectors: what it changes is right to first order.
     let model = |number: usize| {
