@@ -18,7 +18,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("monte_carlo", &["numerics", "cancellation", "system", "space", "sampling"]),
     ("density", &["numerics", "bytes", "system", "space"]),
     ("generator", &["system", "space", "density"]),
-    ("stationary", &["cancellation", "space", "sampling"]),
+    ("stationary", &["numerics", "cancellation", "space", "sampling"]),
     ("passage", &["numerics", "cancellation", "system", "space", "density", "generator", "stationary"]),
     ("spectrum", &["numerics", "cancellation", "system", "space", "generator", "stationary"]),
     ("topology", &["numerics", "space", "density"]),

@@ -18,7 +18,7 @@ use sprs::CsMat;
 use super::dissection::Dissection;
 use super::scaled::{Scaled, factors, hold};
 use super::symbolic::Symbolic;
-use super::triangular::{self, transposed::solve_transposed};
+use super::triangular::{self, transposed::product, transposed::solve_transposed};
 use crate::cancellation::{Cancellation, Cancelled};
 use layout::blocks;
 pub(super) use layout::{Layout, has_phase, others};
@@ -250,18 +250,4 @@ fn mode_factors(
         order.position(|&place| place as usize == held)
     });
     factors(symbolic, rates, position, cancellation)
-}
-
-/// Σ a b, in a fixed order.
-fn product(rates: &[f32], moments: &[f64]) -> f64 {
-    let mut sums = [0.0; 8];
-    let (left, right) = (rates.chunks_exact(8), moments.chunks_exact(8));
-    let rest = left.remainder().iter().zip(right.remainder());
-    let tail: f64 = rest.map(|(a, b)| f64::from(*a) * b).sum();
-    for (a, b) in left.zip(right) {
-        for lane in 0..8 {
-            sums[lane] += f64::from(a[lane]) * b[lane];
-        }
-    }
-    sums.iter().sum::<f64>() + tail
 }
