@@ -14,6 +14,11 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + tail
 }
 
+/// Σ |a - b|.
+pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum()
+}
+
 /// A bracket narrowed by halving, so often or until its ends are neighbouring numbers: where `is_first` holds in its
 /// middle, that takes the place of its first end, else that of its second one.
 pub(crate) fn narrowed(

@@ -13,7 +13,7 @@ use crate::cancellation::Cancellation;
 use crate::generator::AbsorbingGenerator;
 use crate::numerics::bisected;
 use crate::space::CellSpace;
-use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions};
+use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions, product};
 
 /// Vectors from either side at each s.
 const VECTORS: usize = 3;
@@ -189,15 +189,7 @@ impl ReducedModel {
         let size = columns.len();
         let images: Vec<Vec<f64>> = columns
             .iter()
-            .map(|column| {
-                let mut image = vec![0.0; column.len()];
-                for (rates, &weight) in matrix.outer_iterator().zip(column) {
-                    for (row, rate) in rates.iter() {
-                        image[row] += rate * weight;
-                    }
-                }
-                image
-            })
+            .map(|column| product(matrix, column))
             .collect();
         let overlaps =
             DMatrix::from_fn(size, size, |row, column| dot(&rows[row], &columns[column]));

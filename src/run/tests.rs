@@ -17,7 +17,7 @@ use crate::space::Axis;
 use crate::system::test_families::coulomb;
 use crate::topology::{Detection, Feature, FeatureErrors, FeatureKind, Signature, Verdict};
 
-fn subject() -> Subject {
+pub(super) fn subject() -> Subject {
     Subject {
         family: coulomb(),
         observables: vec![Observable::Marginal(0), Observable::Joint(0, 1)],

@@ -5,6 +5,7 @@ use sprs::CsMat;
 
 use super::transfer::Transfer;
 use crate::numerics::dot;
+use crate::stationary::generator::product;
 
 /// Overlaps of the two spaces smaller than this beside the largest are rounding.
 const NOTHING: f64 = 1e-11;
@@ -212,17 +213,6 @@ pub(super) fn in_order<T>(modes: &mut [T], value: impl Fn(&T) -> Complex<f64>) {
             first = end;
         }
     }
-}
-
-/// A x.
-pub(super) fn product(matrix: &CsMat<f64>, vector: &[f64]) -> Vec<f64> {
-    let mut image = vec![0.0; vector.len()];
-    for (rates, &weight) in matrix.outer_iterator().zip(vector) {
-        for (row, rate) in rates.iter() {
-            image[row] += rate * weight;
-        }
-    }
-    image
 }
 
 /// What belongs to an eigenvalue of a model.

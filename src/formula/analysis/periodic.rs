@@ -118,10 +118,7 @@ mod tests {
     use crate::formula::scope::{Scope, Symbols};
 
     fn scope() -> Scope {
-        let mut symbols = Symbols::default();
-        symbols.add_state("x").unwrap();
-        symbols.add_parameter("w").unwrap();
-        Scope::new(symbols).unwrap()
+        Scope::new(Symbols::of(&["x"], &["w"])).unwrap()
     }
 
     fn waves(text: &str) -> Result<usize, String> {

@@ -16,19 +16,12 @@ use rayon::prelude::*;
 use sprs::CsMat;
 
 use super::dissection::Dissection;
-use super::scaled::{Scaled, factors, hold};
+use super::scaled::{Scaled, TRIED, factors, hold, is_held_well, largest};
 use super::symbolic::Symbolic;
 use super::triangular::{self, transposed::product, transposed::solve_transposed};
 use crate::cancellation::{Cancellation, Cancelled};
 use layout::blocks;
 pub(super) use layout::{Layout, has_phase, others};
-
-/// Share of its largest mass that the stand-in's own steady state must have in the held cell: with less, another cell
-/// is held.
-const LEAST_HELD: f64 = 0.1;
-
-/// Cells that are tried one after the other.
-const TRIED: usize = 3;
 
 /// The factors.
 pub(super) struct ModeFactors {
@@ -86,15 +79,8 @@ impl ModeFactors {
         let lowest = rates(0);
         for tried in 1..=TRIED {
             this.null = this.steady(&pattern, &lowest);
-            let size = |cell: usize| this.null[cell].abs();
-            let cells = 0..this.null.len();
-            let best = cells.fold(
-                this.held,
-                |best, cell| {
-                    if size(cell) > size(best) { cell } else { best }
-                },
-            );
-            if size(this.held) >= LEAST_HELD * size(best) || tried == TRIED {
+            let best = largest(&this.null);
+            if is_held_well(&this.null, this.held, best) || tried == TRIED {
                 break;
             }
             this.held = best;
