@@ -51,6 +51,7 @@ pub mod generator;
 pub mod job;
 pub mod method;
 pub mod monte_carlo;
+mod numerics;
 pub mod passage;
 #[cfg(feature = "store")]
 pub mod run;

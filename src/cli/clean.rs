@@ -22,7 +22,7 @@ pub(super) fn run(arguments: &CleanArguments) -> Result<Outcome, CommandError> {
         let title = format!("`{}` holds no runs", folder.display());
         let found = Diagnostic::new(title)
             .remedy("give the folder of a run, or of several, such as `output`");
-        return Err(CommandError::Input(found.into()));
+        return Err(found.into());
     }
     let mut going = removable_runs(folder);
     let all = !arguments.earlier && !arguments.unfinished;
@@ -99,7 +99,7 @@ fn agreed() -> Result<bool, CommandError> {
     if !io::stdin().is_terminal() {
         let found = Diagnostic::new("there is no terminal to ask whether they may be removed")
             .remedy("give `--yes` to remove them without asking");
-        return Err(CommandError::Input(found.into()));
+        return Err(found.into());
     }
     let mut stderr = io::stderr().lock();
     write!(stderr, "remove them? [y/N] ")?;

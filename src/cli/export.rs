@@ -22,16 +22,13 @@ pub(super) fn run(arguments: &ExportArguments) -> Result<Outcome, CommandError> 
         );
         let found =
             Diagnostic::new(title).remedy("give another place with `--out PATH`, or remove it");
-        return Err(CommandError::Input(found.into()));
+        return Err(found.into());
     }
     check_place(&out)?;
     let stored = Stored::read(&arguments.run, &[], &[], true)?;
     let result = &stored.result;
     if let Some(parent) = out.parent() {
-        std::fs::create_dir_all(parent).map_err(|source| RunError::Write {
-            path: parent.to_owned(),
-            source,
-        })?;
+        std::fs::create_dir_all(parent).map_err(RunError::writing(parent))?;
     }
     let title = &stored.spec.settings.title;
     export(result, title, arguments.format, &out)?;

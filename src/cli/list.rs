@@ -22,7 +22,7 @@ pub(super) fn run(arguments: &ListArguments) -> Result<Outcome, CommandError> {
         };
         let found = Diagnostic::new(format!("`{}` {words}", folder.display()))
             .remedy("give the folder that holds runs, as `pbif list DIR`; `pbif sweep FILE` makes one in output/");
-        return Err(CommandError::Input(found.into()));
+        return Err(found.into());
     }
     let mut table = Table::new();
     table.load_style(presets::NOTHING);

@@ -71,7 +71,7 @@ fn of_map(arguments: &MergeArguments) -> Result<Outcome, CommandError> {
     if arguments.partial {
         let found = Diagnostic::new("`--partial` is for the shards of a sweep")
             .remedy("compute the shards of the map that are missing; each goes on with `--resume`");
-        return Err(CommandError::Input(found.into()));
+        return Err(found.into());
     }
     let shards = MapShards::open(&arguments.run).map_err(refusal)?;
     let file = SweepFile::parse("the shards' sweep", &shards.sweep_file);

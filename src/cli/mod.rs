@@ -119,6 +119,12 @@ impl From<JobError> for CommandError {
     }
 }
 
+impl From<Diagnostic> for CommandError {
+    fn from(found: Diagnostic) -> Self {
+        Self::Input(found.into())
+    }
+}
+
 impl From<Report> for CommandError {
     fn from(report: Report) -> Self {
         Self::Input(report)

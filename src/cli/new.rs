@@ -77,7 +77,7 @@ fn unknown(like: &str) -> Diagnostic {
 /// # Errors
 /// [`CommandError::Input`] where there is no such starting file, or the file cannot be made.
 fn write(path: &Path, like: &str) -> Result<String, CommandError> {
-    let refuse = |diagnostic: Diagnostic| CommandError::Input(diagnostic.into());
+    let refuse = |diagnostic: Diagnostic| diagnostic.into();
     let mut files = starting_files().iter();
     let Some(file) = files.find(|file| file.name == like) else {
         return Err(refuse(unknown(like)));

@@ -34,7 +34,7 @@ pub(super) fn run(arguments: &PlotArguments) -> Result<Outcome, CommandError> {
     if !arguments.with.is_empty() {
         let report = Diagnostic::new("`--with` marks sweeps in the figure of a plane, and this is the run of a sweep")
             .remedy("give the folder of a map or of curves first: `pbif plot output/coulomb_plane --with output/coulomb_fc`");
-        return Err(CommandError::Input(report.into()));
+        return Err(report.into());
     }
     let stored = Stored::read(&arguments.run, &overrides, &["figures"], arguments.quiet)?;
     if !arguments.at.is_empty() {
@@ -143,7 +143,7 @@ pub(super) fn style_key(word: &str) -> Result<String, CommandError> {
                 .allowed(format!("a number of millimetres, {}", list(&known)))
                 .remedy("finer settings are keys: `--set figures.style.text=7`")
                 .nearest(word, known.iter().copied());
-            Err(CommandError::Input(report.into()))
+            Err(report.into())
         }
     }
 }
@@ -172,7 +172,7 @@ fn check_values(result: &SweepResult, values: &[f64]) -> Result<(), CommandError
         let report = Diagnostic::new(title)
             .allowed(format!("the nearest that it has: {}", offered.join(", ")))
             .remedy("`--set figures.at=[…]` takes the nearest value by itself");
-        return Err(CommandError::Input(report.into()));
+        return Err(report.into());
     }
     Ok(())
 }

@@ -4,6 +4,7 @@ use crate::density::{
     Density, DensityError, EstimatedDensity, Variants, hellinger_of_masses, negative_part,
     total_variation, total_variation_of_masses,
 };
+use crate::numerics;
 
 /// A distance with its uncertainty. A distance cannot be negative, so noise alone makes one: only what exceeds `noise`
 /// and `systematic` tells two densities apart.
@@ -118,10 +119,7 @@ fn jackknife_variance(values: &[f64]) -> f64 {
     if values.len() < 2 {
         return 0.0;
     }
-    let groups = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / groups;
-    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    (groups - 1.0) / groups * squares
+    numerics::jackknife_variance(values.iter().copied())
 }
 
 /// Variance of the difference of the masses, a cell, with the factor by which the root of it is too small on average.

@@ -9,6 +9,7 @@ use super::doubt::{BifurcationStatus, Doubt, status_of};
 use super::measure::{DECAY_DISCRIMINANT, EXPONENT, Measure, SPECTRAL_CURVATURE, SPECTRAL_RISE};
 use super::spectral_change::SpectralChange;
 use super::{CellCheck, Point, SolveReport, Subject};
+use crate::numerics::bisected;
 use crate::system::{ExponentMethod, Family, MeasureLevel};
 use crate::topology::two_sided_limit;
 
@@ -320,16 +321,9 @@ fn jump(samples: &[Excess], left: usize, root: f64) -> (bool, Option<f64>) {
 
 /// The root between two samples of the polynomial through some.
 fn root(nodes: &[Excess], ends: [Excess; 2]) -> f64 {
-    let [mut a, mut b] = ends.map(|end| end.at);
     let is_below = ends[0].over < 0.0;
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (a + b);
-        match (through(nodes, middle) < 0.0) == is_below {
-            true => a = middle,
-            false => b = middle,
-        }
-    }
-    0.5 * (a + b)
+    let is_first = |middle: f64| (through(nodes, middle) < 0.0) == is_below;
+    bisected((ends[0].at, ends[1].at), HALVINGS, is_first)
 }
 
 /// The polynomial through some samples, at a value.

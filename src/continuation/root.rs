@@ -5,6 +5,7 @@
 
 use super::Point;
 use super::follow::Crossing;
+use crate::numerics::jackknife;
 use crate::topology::{Detector, Indicator, two_sided_limit};
 
 /// The parts of the error of a P-bifurcation's value, in units of the parameter; each bounds its part at the
@@ -175,10 +176,7 @@ fn sampling(a: f64, b: f64, crossing: &Crossing, value: f64, slope: f64, confide
     let zeros: Vec<f64> = (low.replicates.iter().zip(&high.replicates))
         .map(|(low, high)| -((1.0 - share) * low + share * high) / slope)
         .collect();
-    let count = groups as f64;
-    let mean = zeros.iter().sum::<f64>() / count;
-    let squares: f64 = zeros.iter().map(|zero| (zero - mean).powi(2)).sum();
-    limit * ((count - 1.0) / count * squares).sqrt()
+    limit * jackknife(zeros.iter().copied())
 }
 
 fn limit_or_zero(limit: f64, error: f64) -> f64 {

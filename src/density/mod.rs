@@ -34,7 +34,7 @@ pub(crate) use discretisation::{
 pub(crate) use distance::{half_difference, negative_part};
 pub use distance::{hellinger, hellinger_of_masses, total_variation, total_variation_of_masses};
 pub use moments::moments;
-pub(crate) use moments::{EstimatedMoments, Roughness, excess_variances, jackknife};
+pub(crate) use moments::{EstimatedMoments, Roughness, excess_variances};
 pub use profile::{Extremum, Profile, SlopeJump, Turn};
 pub use projection::Projection;
 pub(crate) use projection::{QuantityMoments, phase_factors, times};

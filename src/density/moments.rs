@@ -1,6 +1,7 @@
 //! Means and standard deviations from cell masses, and their errors.
 
 use super::{DensityError, Moments, Observable, Projection};
+use crate::numerics::jackknife;
 use crate::space::CellSpace;
 
 /// Moments with what is known of their errors.
@@ -48,10 +49,7 @@ impl EstimatedMoments {
     /// Moments whose standard errors are those of delete-a-group replicates (Tukey's jackknife); unknown with fewer
     /// than two of them.
     pub(crate) fn by_replicates(moments: Moments, replicates: &[Moments]) -> Self {
-        let error = |of: fn(&Moments) -> f64| {
-            let values: Vec<f64> = replicates.iter().map(of).collect();
-            jackknife(&values)
-        };
+        let error = |of: fn(&Moments) -> f64| jackknife(replicates.iter().map(of));
         let errors = Moments {
             mean: error(|one| one.mean),
             standard_deviation: error(|one| one.standard_deviation),
@@ -150,14 +148,6 @@ impl Roughness<'_> {
             standard_deviation: spread * self.of(&squares),
         }
     }
-}
-
-/// Standard error of a number from its values without one group of samples each (Tukey's jackknife).
-pub(crate) fn jackknife(replicates: &[f64]) -> f64 {
-    let groups = replicates.len() as f64;
-    let mean = replicates.iter().sum::<f64>() / groups;
-    let squares = replicates.iter().map(|one| (one - mean).powi(2));
-    ((groups - 1.0) / groups * squares.sum::<f64>()).sqrt()
 }
 
 /// Mean and standard deviation of every axis, in the order of the axes, from the masses of all cells

@@ -8,6 +8,7 @@
 //! ratios, is ruled by the cells that hold the mass, and errs to the large side beside them.
 
 use super::{Density, DensityError, EstimatedDensity, Observable, Projection, Variants};
+use crate::numerics;
 use crate::space::CellSpace;
 
 /// Cells on either side of a cell whose variances are pooled with its own.
@@ -71,13 +72,9 @@ pub(crate) fn estimate_projected(
 
 /// Jackknife variance of every value.
 fn jackknife_variance(replicates: &[Density], cells: usize) -> Vec<f64> {
-    let groups = replicates.len() as f64;
-    let variance = |cell: usize| {
-        let values = || replicates.iter().map(|replicate| replicate.values[cell]);
-        let mean = values().sum::<f64>() / groups;
-        (groups - 1.0) / groups * values().map(|value| (value - mean).powi(2)).sum::<f64>()
-    };
-    (0..cells).map(variance).collect()
+    let values = |cell: usize| replicates.iter().map(move |one| one.values[cell]);
+    let variances = (0..cells).map(|cell| numerics::jackknife_variance(values(cell)));
+    variances.collect()
 }
 
 /// Standard errors from variances pooled as the module's text says.

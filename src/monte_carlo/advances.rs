@@ -5,6 +5,8 @@
 //! of the advance over two windows less that over one is 2 D w, up to what is left of a correlation after a whole
 //! window between: D = (var d + 2 cov(d, d'))/(2 w).
 
+use crate::numerics::jackknife;
+
 /// How an angle turns in the steady state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rotation {
@@ -79,12 +81,7 @@ pub(super) fn rotation(blocks: &[Advances], axis: usize, window: f64) -> Option<
         return None;
     }
     // Delete-a-block jackknife.
-    let count = without.len() as f64;
-    let error = |which: usize| {
-        let mean = without.iter().map(|both| both[which]).sum::<f64>() / count;
-        let squares = without.iter().map(|both| (both[which] - mean).powi(2));
-        ((count - 1.0) / count * squares.sum::<f64>()).sqrt()
-    };
+    let error = |which: usize| jackknife(without.iter().map(|both| both[which]));
     Some(Rotation {
         axis,
         velocity: (velocity, error(0)),

@@ -6,7 +6,7 @@
 //! the same of the bridge with its time turned round.
 
 use super::batch::{Limits, Purpose};
-use super::walk::{Border, Chance};
+use super::walk::{Border, Chance, Meeting, StepLevels};
 use crate::sampling::Stepper;
 use crate::system::{LANES, Lanes};
 
@@ -60,57 +60,6 @@ impl Chances {
         let lane = self.number * LANES as u64 + lane as u64;
         let number = (lane * 2 + region as u64) * 4 + u64::from(drawn);
         Chance::new(self.seed, Purpose::Meeting, number)
-    }
-}
-
-/// How a region was met within a step: when it was entered first and left last, as shares of the step.
-#[derive(Clone, Copy)]
-struct Meeting {
-    first: f64,
-    last: f64,
-}
-
-/// Levels of a region at both ends of a step, over the strength of the noise that acts on them where there is any.
-struct StepLevels {
-    before: f64,
-    after: f64,
-    /// The variance that noise gives over the step; zero without.
-    variance: f64,
-}
-
-impl StepLevels {
-    fn new((level, speed): (f64, f64), (next, next_speed): (f64, f64), time_step: f64) -> Self {
-        let is_noisy = speed > 0.0 && next_speed > 0.0;
-        let (units, variance) = match is_noisy {
-            true => ((speed, next_speed), time_step),
-            false => ((1.0, 1.0), 0.0),
-        };
-        Self {
-            before: level / units.0,
-            after: next / units.1,
-            variance,
-        }
-    }
-
-    /// Probability that a path which is outside at both ends was not inside between them.
-    fn unmet(&self) -> f64 {
-        if self.variance > 0.0 {
-            -(-2.0 * self.before * self.after / self.variance).exp_m1()
-        } else {
-            1.0
-        }
-    }
-
-    /// When the region is entered first, and left last, given that a path meets it.
-    fn meeting(&self, chance: &Chance) -> Meeting {
-        let share = |near: f64, far: f64| match near > 0.0 {
-            true => chance.crossing(far.abs() / near, self.variance / (near * near)),
-            false => 0.0,
-        };
-        Meeting {
-            first: share(self.before, self.after),
-            last: 1.0 - share(self.after, self.before),
-        }
     }
 }
 

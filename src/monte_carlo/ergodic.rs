@@ -61,15 +61,11 @@ impl ErgodicRun {
         system: &dyn System,
         space: &CellSpace,
     ) -> Result<(), MonteCarloError> {
-        for (name, value) in [
+        MonteCarloError::check_times([
             ("time step", self.time_step),
             ("burn-in", self.burn_in),
             ("length", self.length),
-        ] {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(MonteCarloError::Time { name, value });
-            }
-        }
+        ])?;
         if self.stride == 0 {
             return Err(MonteCarloError::Stride);
         }

@@ -4,6 +4,8 @@
 //! Paths that had not ended when they were given up are known to last longer: their times beyond that are taken for
 //! exponential, with the rate of those that have lasted long.
 
+use crate::numerics::jackknife;
+
 /// Exits in each of the two parts of a tail, at least.
 const FEWEST: usize = 32;
 
@@ -153,8 +155,11 @@ impl ExitTimes {
         let number =
             |(index, ((&value, &shift), least)): (usize, ((&f64, &f64), f64))| ExitNumber {
                 value,
-                sampling: jackknife(&fine, index).max(least),
-                step: (shift, jackknife(&shifted, index)),
+                sampling: jackknife(fine.iter().map(|numbers| numbers[index])).max(least),
+                step: (
+                    shift,
+                    jackknife(shifted.iter().map(|numbers| numbers[index])),
+                ),
             };
         numbers.map(number).collect()
     }
@@ -162,15 +167,6 @@ impl ExitTimes {
 
 pub(super) fn differences(one: &[f64], other: &[f64]) -> Vec<f64> {
     one.iter().zip(other).map(|(a, b)| a - b).collect()
-}
-
-/// Standard error of a number by its values without one block each.
-pub(super) fn jackknife(without: &[Vec<f64>], index: usize) -> f64 {
-    let values = || without.iter().map(|numbers| numbers[index]);
-    let count = without.len() as f64;
-    let mean = values().sum::<f64>() / count;
-    let squares: f64 = values().map(|value| (value - mean).powi(2)).sum();
-    ((count - 1.0) / count * squares).sqrt()
 }
 
 /// Times, ascending, those of paths that were given up infinite.

@@ -102,6 +102,15 @@ pub enum MonteCarloError {
 }
 
 impl MonteCarloError {
+    /// Times must be finite and greater than zero; each with its name.
+    fn check_times<const N: usize>(times: [(&'static str, f64); N]) -> Result<(), Self> {
+        let is_wrong = |(_, value): &(&str, f64)| !(value.is_finite() && *value > 0.0);
+        match times.into_iter().find(is_wrong) {
+            Some((name, value)) => Err(Self::Time { name, value }),
+            None => Ok(()),
+        }
+    }
+
     /// Whether the long-run density of the system can be counted on the cells of the space.
     fn check(system: &dyn System, space: &CellSpace) -> Result<(), Self> {
         system.facts().autonomous()?;

@@ -75,11 +75,7 @@ pub fn first_passages<'a>(
     cancellation: &Cancellation,
 ) -> Result<ExitTimes, MonteCarloError> {
     MonteCarloError::check(system, space)?;
-    for (name, value) in [("time step", run.time_step), ("longest time", run.longest)] {
-        if !(value.is_finite() && value > 0.0) {
-            return Err(MonteCarloError::Time { name, value });
-        }
-    }
+    MonteCarloError::check_times([("time step", run.time_step), ("longest time", run.longest)])?;
     let target = until.into();
     let parts = target.exits.len();
     let (limits, border) = (Limits::new(space), Border::new(system, space, target));

@@ -53,10 +53,7 @@ impl PathRun {
         cancellation: &Cancellation,
     ) -> Result<Self, MonteCarloError> {
         MonteCarloError::check(system, space)?;
-        if !(turns.is_finite() && turns > 0.0) {
-            let (name, value) = ("number of turns", turns);
-            return Err(MonteCarloError::Time { name, value });
-        }
+        MonteCarloError::check_times([("number of turns", turns)])?;
         let pilot = pilot(system, space, seed, cancellation)?;
         let time_step = pilot.automatic_time_step(Integrator::StochasticHeun);
         let centres: Vec<Vec<f64>> = pilot.cells.iter().map(|&cell| space.centre(cell)).collect();
@@ -78,11 +75,7 @@ impl PathRun {
     }
 
     fn check(&self) -> Result<(), MonteCarloError> {
-        let value = self.time_step;
-        if !(value.is_finite() && value > 0.0) {
-            let name = "time step";
-            return Err(MonteCarloError::Time { name, value });
-        }
+        MonteCarloError::check_times([("time step", self.time_step)])?;
         match self.stride {
             0 => Err(MonteCarloError::Stride),
             _ => Ok(()),

@@ -4,6 +4,7 @@
 
 use super::MonteCarloError;
 use super::batch::Histogram;
+use crate::numerics::jackknife;
 use crate::sampling::part_of_period;
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes, System};
@@ -144,9 +145,6 @@ impl Periodic {
     /// Delete-a-block jackknife.
     fn error(&self, of: &dyn Fn(&[[f64; 3]]) -> f64) -> f64 {
         let values: Vec<f64> = self.without.iter().map(|sums| of(sums)).collect();
-        let count = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / count;
-        let squares = values.iter().map(|value| (value - mean).powi(2));
-        ((count - 1.0) / count * squares.sum::<f64>()).sqrt()
+        jackknife(values.iter().copied())
     }
 }

@@ -11,10 +11,11 @@ use super::batch::{Limits, Purpose, key};
 use super::crossings::{Chances, Crossings, TransitionCounts};
 use super::ergodic::Starts;
 use super::estimate::BLOCKS;
-use super::exit_times::{ExitNumber, differences, jackknife};
+use super::exit_times::{ExitNumber, differences};
 use super::halving::over_two_steps;
 use super::walk::Border;
 use crate::cancellation::{Cancellation, Cancelled};
+use crate::numerics::jackknife;
 use crate::sampling::{Integrator, NormalStream, Stepper};
 use crate::space::CellSpace;
 use crate::system::{BoundQuantity, LANES, Lanes, System};
@@ -98,8 +99,11 @@ impl Transitions {
         let (shifted, fine): (Vec<_>, Vec<_>) = without.unzip();
         std::array::from_fn(|index| ExitNumber {
             value: values[index],
-            sampling: jackknife(&fine, index),
-            step: (shifts[index], jackknife(&shifted, index)),
+            sampling: jackknife(fine.iter().map(|numbers| numbers[index])),
+            step: (
+                shifts[index],
+                jackknife(shifted.iter().map(|numbers| numbers[index])),
+            ),
         })
     }
 }
@@ -127,11 +131,7 @@ pub fn transitions(
     cancellation: &Cancellation,
 ) -> Result<Transitions, MonteCarloError> {
     MonteCarloError::check(system, space)?;
-    for (name, value) in [("time step", run.time_step), ("burn-in", run.burn_in)] {
-        if !(value.is_finite() && value > 0.0) {
-            return Err(MonteCarloError::Time { name, value });
-        }
-    }
+    MonteCarloError::check_times([("time step", run.time_step), ("burn-in", run.burn_in)])?;
     if states.iter().any(|state| state.len() != space.dimension()) {
         return Err(MonteCarloError::Start);
     }

@@ -126,6 +126,61 @@ impl Chance {
     }
 }
 
+/// How a region was met within a step: when it was entered first and left last, as shares of the step.
+#[derive(Clone, Copy)]
+pub(super) struct Meeting {
+    pub(super) first: f64,
+    pub(super) last: f64,
+}
+
+/// Levels of a region at both ends of a step, over the strength of the noise that acts on them where there is any.
+pub(super) struct StepLevels {
+    pub(super) before: f64,
+    pub(super) after: f64,
+    /// The variance that noise gives over the step; zero without.
+    variance: f64,
+}
+
+impl StepLevels {
+    pub(super) fn new(
+        (level, speed): (f64, f64),
+        (next, next_speed): (f64, f64),
+        time_step: f64,
+    ) -> Self {
+        let is_noisy = speed > 0.0 && next_speed > 0.0;
+        let (units, variance) = match is_noisy {
+            true => ((speed, next_speed), time_step),
+            false => ((1.0, 1.0), 0.0),
+        };
+        Self {
+            before: level / units.0,
+            after: next / units.1,
+            variance,
+        }
+    }
+
+    /// Probability that a path which is outside at both ends was not inside between them.
+    pub(super) fn unmet(&self) -> f64 {
+        if self.variance > 0.0 {
+            -(-2.0 * self.before * self.after / self.variance).exp_m1()
+        } else {
+            1.0
+        }
+    }
+
+    /// When the region is entered first, and left last, given that a path meets it.
+    pub(super) fn meeting(&self, chance: &Chance) -> Meeting {
+        let share = |near: f64, far: f64| match near > 0.0 {
+            true => chance.crossing(far.abs() / near, self.variance / (near * near)),
+            false => 0.0,
+        };
+        Meeting {
+            first: share(self.before, self.after),
+            last: 1.0 - share(self.after, self.before),
+        }
+    }
+}
+
 /// Paths with one time step, all of a batch at different ages.
 pub(super) struct Walk<'a> {
     border: &'a Border<'a>,
@@ -182,23 +237,10 @@ impl<'a> Walk<'a> {
             }
             let from = (before.0[lane], before.1[lane]);
             let to = (self.levels[lane], self.speeds[lane]);
-            let is_noisy = from.1 > 0.0 && to.1 > 0.0;
-            let units = if is_noisy { (from.1, to.1) } else { (1.0, 1.0) };
-            let (a, b) = (from.0 / units.0, to.0.abs() / units.1);
-            if is_noisy {
-                self.unmet[lane] *= -(-2.0 * a * b / self.time_step).exp_m1();
-            }
+            let ends = StepLevels::new(from, to, self.time_step);
+            self.unmet[lane] *= ends.unmet();
             if to.0 < 0.0 || self.unmet[lane] < chance.unmet {
-                let spread = if is_noisy {
-                    self.time_step / (a * a)
-                } else {
-                    0.0
-                };
-                let share = if a > 0.0 {
-                    chance.crossing(b / a, spread)
-                } else {
-                    0.0
-                };
+                let share = ends.meeting(chance).first;
                 self.going[lane] = false;
                 if self.border.exits.len() > 1 {
                     let state: Vec<f64> = self.states.iter().map(|lanes| lanes[lane]).collect();

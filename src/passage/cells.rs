@@ -8,6 +8,7 @@
 
 use super::PassageError;
 use crate::generator::levels;
+use crate::numerics::{bisected, narrowed};
 use crate::space::{Axis, CellSpace, Grading};
 use crate::system::{BoundQuantity, System};
 
@@ -218,18 +219,10 @@ fn only_zero(function: &mut impl FnMut(f64) -> f64, places: &[f64]) -> Option<f6
     if more.is_some() {
         return None;
     }
-    let (mut low, mut high) = (pair[0], pair[1]);
-    let below = function(low) < 0.0;
-    for _ in 0..100 {
-        let middle = 0.5 * (low + high);
-        if (function(middle) < 0.0) == below {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
+    let below = function(pair[0]) < 0.0;
+    let is_first = |middle: f64| (function(middle) < 0.0) == below;
     // A place that is zero but for rounding is zero.
-    let at = 0.5 * (low + high);
+    let at = bisected((pair[0], pair[1]), 100, is_first);
     Some(if at.abs() <= 1e-12 * (pair[1] - pair[0]) {
         0.0
     } else {
@@ -266,20 +259,11 @@ fn flat(
             .enumerate()
             .map(|(other, axis)| axis.nodes()[space.position(cell, other)])
             .collect();
-        let (mut a, mut b) = (inner, outer);
-        for _ in 0..200 {
-            let middle = 0.5 * (a + b);
-            if middle == a || middle == b {
-                break;
-            }
+        let is_outside = |middle: f64| {
             state[index] = middle;
-            if level.at(&state) >= 0.0 {
-                a = middle
-            } else {
-                b = middle
-            }
-        }
-        a
+            level.at(&state) >= 0.0
+        };
+        narrowed((inner, outer), 200, is_outside).0
     };
     let first = crossing(
         *kept

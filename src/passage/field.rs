@@ -10,7 +10,7 @@
 use std::sync::Arc;
 
 use super::PassageError;
-use super::cells::cells;
+use super::cells::{PassageCells, cells};
 use super::exits::Exits;
 use super::rim::{beside_border, mend, rim};
 use super::solve::enclosed;
@@ -106,16 +106,15 @@ pub fn field(
     (options, rates): (&GeneratorOptions, &RateOptions),
     cancellation: &Cancellation,
 ) -> Result<PassageField, PassageError> {
-    let rates = RateOptions {
-        tolerance: TOLERANCE,
-        ..*rates
-    };
     let question = FieldQuestion {
         system,
         space,
         target,
         options,
-        rates,
+        rates: RateOptions {
+            tolerance: TOLERANCE,
+            ..*rates
+        },
         cancellation,
     };
     let solve = |factor: f64| question.on_grid(factor);
@@ -143,35 +142,48 @@ pub(super) fn with_changes(
     Ok((expected, [halved?, border?]))
 }
 
-/// A field with what it is solved with.
-struct FieldQuestion<'a> {
-    system: &'a Arc<dyn System>,
-    space: &'a CellSpace,
-    target: &'a FieldTarget,
-    options: &'a GeneratorOptions,
-    rates: RateOptions,
-    cancellation: &'a Cancellation,
+/// A field, or transitions between two parts of a target, with what it is solved with.
+pub(super) struct FieldQuestion<'a> {
+    pub(super) system: &'a Arc<dyn System>,
+    /// The cells of the sweep.
+    pub(super) space: &'a CellSpace,
+    pub(super) target: &'a FieldTarget,
+    pub(super) options: &'a GeneratorOptions,
+    pub(super) rates: RateOptions,
+    pub(super) cancellation: &'a Cancellation,
 }
 
 impl FieldQuestion<'_> {
-    /// The field by a grid of `factor` times the sweep's cells an axis.
-    fn on_grid(&self, factor: f64) -> Result<OnGrid, PassageError> {
+    /// A grid of `factor` times the sweep's cells an axis, and the generators on it of processes that end at the border
+    /// of the target: as the scheme has it, by half of the dissipation, and by a border of lower order.
+    ///
+    /// # Errors
+    /// Those of cells and of the assembly; [`PassageError::Never`] where nothing ends.
+    pub(super) fn generators(
+        &self,
+        factor: f64,
+    ) -> Result<(PassageCells, [AbsorbingGenerator; 3]), PassageError> {
         let until = &self.target.until;
         let found = cells(self.system.as_ref(), self.space, until, factor)?;
         let enclosed = enclosed(self.system, &found);
-        let space = found.space;
         let assemble = |dissipation, closure| {
             let scheme = (dissipation, closure);
-            assemble_absorbing(&enclosed, &space, until, self.options, scheme)
+            assemble_absorbing(&enclosed, &found.space, until, self.options, scheme)
         };
         let full = assemble(Dissipation::Full, Closure::Fourth)?;
         if full.ends.iter().all(|&rate| rate == 0.0) {
             return Err(PassageError::Never);
         }
-        let others = [
-            assemble(Dissipation::Half, Closure::Fourth)?,
-            assemble(Dissipation::Full, Closure::Third)?,
-        ];
+        let half = assemble(Dissipation::Half, Closure::Fourth)?;
+        let third = assemble(Dissipation::Full, Closure::Third)?;
+        Ok((found, [full, half, third]))
+    }
+
+    /// The field by a grid of `factor` times the sweep's cells an axis.
+    fn on_grid(&self, factor: f64) -> Result<OnGrid, PassageError> {
+        let until = &self.target.until;
+        let (PassageCells { space, .. }, generators) = self.generators(factor)?;
+        let [full, half, third] = &generators;
         let exits = Exits::new(&self.target.exits, &space);
         let gain = |generator: &AbsorbingGenerator| match self.target.part {
             Some(part) => exits.rates(&generator.endings).swap_remove(part),
@@ -187,7 +199,7 @@ impl FieldQuestion<'_> {
         let mut solver = AbsorbingSolver::new(&space, self.rates, self.cancellation);
         let (stage, _) = solver.stage(&matrix, &full.ends, &even)?;
         let (expected, [mut halved, mut border]) =
-            with_changes(&mut solver, &stage, [&full, &others[0], &others[1]], gain)?;
+            with_changes(&mut solver, &stage, [full, half, third], gain)?;
         if self.target.part.is_none() {
             // Another way to end sums at an oblique border.
             let [one, other] = &full.weights;
@@ -206,26 +218,37 @@ impl FieldQuestion<'_> {
         mend(&mut values, &rim, |state| self.inside(state));
         mend(&mut halved, &rim, |_| 0.0);
         mend(&mut border, &rim, |_| 0.0);
-        let places: Vec<Vec<f64>> = self
-            .space
-            .axes()
-            .iter()
-            .map(|axis| axis.centres())
-            .collect();
-        let (system, kept) = (self.system.as_ref(), (&space, full.kept.as_slice()));
         let at = |field: &[f64], on_border: &dyn Fn(&[f64]) -> f64| {
-            let inner = |state: &[f64]| at_state(kept, state, FEWER_NODES, field);
-            let near = |state: &[f64]| {
-                let found = beside_border(system, (&space, until), state, inner, on_border);
-                found.or_else(|| at_state(kept, state, NODES, field))
-            };
-            at_states_of(&places, kept, |_, state| until.at(state) < 0.0, field, near)
+            self.at_centres((&space, &full.kept), field, Some(on_border))
         };
         Ok(OnGrid {
             values: at(&values, &|state| self.inside(state)),
             halved: at(&halved, &|_| 0.0),
             border: at(&border, &|_| 0.0),
         })
+    }
+
+    /// A field that is known at the kept nodes of a grid, at the centres of the sweep's cells, by what it is on the
+    /// border of the target if that is known.
+    pub(super) fn at_centres(
+        &self,
+        (space, kept): (&CellSpace, &[bool]),
+        field: &[f64],
+        on_border: Option<impl Fn(&[f64]) -> f64>,
+    ) -> Vec<Option<f64>> {
+        let (system, until) = (self.system.as_ref(), &self.target.until);
+        let axes = self.space.axes().iter();
+        let places: Vec<Vec<f64>> = axes.map(|axis| axis.centres()).collect();
+        let cells = (space, kept);
+        let inner = |state: &[f64]| at_state(cells, state, FEWER_NODES, field);
+        let near = |state: &[f64]| {
+            let of_border = on_border
+                .as_ref()
+                .and_then(|value| beside_border(system, (space, until), state, inner, value));
+            of_border.or_else(|| at_state(cells, state, NODES, field))
+        };
+        let is_inside = |_: usize, state: &[f64]| until.at(state) < 0.0;
+        at_states_of(&places, cells, is_inside, field, near)
     }
 
     /// The field with what it is inside the target, within the values that it can have.

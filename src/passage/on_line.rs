@@ -3,6 +3,7 @@
 
 use super::{Passage, PassageError, Start, Timed, WithError};
 use crate::generator::{Chain, MESH_DEPTH, MESH_PLACES, Mesh, Reach, Reduced};
+use crate::numerics::{bisected, narrowed};
 use crate::stationary::generator::AbsorbingWork;
 use crate::system::{BoundQuantity, LANES};
 
@@ -72,19 +73,9 @@ fn is_inside(region: &BoundQuantity, places: &[f64]) -> Vec<bool> {
 }
 
 /// Where a region begins or ends between two places, of which the first is inside or not.
-fn border(region: &BoundQuantity, (mut low, mut high): (f64, f64), first: bool) -> f64 {
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        if (region.at(&[middle]) < 0.0) == first {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    high
+fn border(region: &BoundQuantity, ends: (f64, f64), first: bool) -> f64 {
+    let is_first = |middle: f64| (region.at(&[middle]) < 0.0) == first;
+    narrowed(ends, HALVINGS, is_first).1
 }
 
 /// The numbers of a passage of a system on one axis; `None` where its line has no end.
@@ -293,18 +284,7 @@ impl Survival {
             }
             (low, high) = (high, 2.0 * high);
         }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                break;
-            }
-            if self.at(middle) > share {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        0.5 * (low + high)
+        bisected((low, high), HALVINGS, |middle| self.at(middle) > share)
     }
 }
 

@@ -1,32 +1,18 @@
 //! Processes on their way from one region to another on one grid: their density and their current, with what schemes
 //! and errors of the steady state change of them.
 
-use std::sync::Arc;
-
 use super::cells::PassageCells;
 use super::current::Flow;
-use super::field::{FieldTarget, OnGrid, errors_of};
-use super::rim::{beside_border, mend, rim};
-use super::start::{at_state, at_states_of};
+use super::field::{FieldQuestion, OnGrid, errors_of};
+use super::rim::{mend, rim};
 use super::steady::local_volumes;
 use super::timed::WithError;
 use crate::generator::AbsorbingGenerator;
-use crate::space::CellSpace;
-use crate::space::nodes::{FEWER_NODES, NODES};
 use crate::stationary::generator::Expected;
-use crate::system::System;
 
 /// The region that is left, and the one that is come to, by their places among the parts of a target.
 pub(super) const FROM: usize = 0;
 pub(super) const TO: usize = 1;
-
-/// Between which regions of a system transitions are, and where they are asked for.
-pub(super) struct Asked<'a> {
-    pub(super) system: &'a Arc<dyn System>,
-    /// The cells of the sweep.
-    pub(super) space: &'a CellSpace,
-    pub(super) target: &'a FieldTarget,
-}
 
 /// Numbers by a grid, with what errors of the steady state change of them.
 pub(super) struct Found {
@@ -78,7 +64,7 @@ pub(super) struct OnWay<'a> {
 
 impl<'a> OnWay<'a> {
     pub(super) fn new(
-        asked: &Asked<'_>,
+        asked: &FieldQuestion<'_>,
         found: &'a PassageCells,
         full: &'a AbsorbingGenerator,
         (last, next, [mut halved, mut border]): (Changed<Vec<f64>>, Expected, [Vec<f64>; 2]),
@@ -120,7 +106,7 @@ impl<'a> OnWay<'a> {
     }
 
     /// Density and current at the centres of the sweep's cells.
-    pub(super) fn fields(&self, asked: &Asked<'_>) -> Vec<Found> {
+    pub(super) fn fields(&self, asked: &FieldQuestion<'_>) -> Vec<Found> {
         let space = &self.found.space;
         let volumes = local_volumes(space);
         let per_volume = |unknowns: &[f64]| -> Vec<f64> {
@@ -131,7 +117,9 @@ impl<'a> OnWay<'a> {
                 .collect()
         };
         let found = |of: Changed<Vec<f64>>, is_zero: bool| {
-            let at = |field: &[f64]| self.at_centres(asked, field, is_zero);
+            // On borders it may be zero.
+            let on_border = is_zero.then_some(|_: &[f64]| 0.0);
+            let at = |field: &[f64]| asked.at_centres((space, self.kept), field, on_border);
             let changes = at(&of.steady)
                 .into_iter()
                 .map(|change| change.unwrap_or(0.0));
@@ -175,34 +163,6 @@ impl<'a> OnWay<'a> {
         };
         let currents = (0..space.dimension()).map(|axis| found(current(axis), false));
         [found(density, true)].into_iter().chain(currents).collect()
-    }
-
-    /// A field that is known at the kept nodes, at the centres of the sweep's cells; on borders it may be zero.
-    pub(super) fn at_centres(
-        &self,
-        asked: &Asked<'_>,
-        field: &[f64],
-        is_zero: bool,
-    ) -> Vec<Option<f64>> {
-        let until = &asked.target.until;
-        let cells = (&self.found.space, self.kept);
-        let axes = asked.space.axes().iter();
-        let places: Vec<Vec<f64>> = axes.map(|axis| axis.centres()).collect();
-        let near = |state: &[f64]| {
-            let inner = |state: &[f64]| at_state(cells, state, FEWER_NODES, field);
-            let system = asked.system.as_ref();
-            let of_border = is_zero
-                .then(|| beside_border(system, (cells.0, until), state, inner, |_| 0.0))
-                .flatten();
-            of_border.or_else(|| at_state(cells, state, NODES, field))
-        };
-        at_states_of(
-            &places,
-            cells,
-            |_, state| until.at(state) < 0.0,
-            field,
-            near,
-        )
     }
 }
 

@@ -10,21 +10,18 @@
 
 use std::sync::Arc;
 
-use super::cells::cells;
 use super::exits::Exits;
 use super::field::{
-    FieldTarget, OnGrid, PassageField, TOLERANCE, greatest_beside, on_three_grids, with_changes,
+    FieldQuestion, FieldTarget, OnGrid, PassageField, TOLERANCE, greatest_beside, on_three_grids,
+    with_changes,
 };
-use super::on_way::{Asked, Changed, FROM, Found, OnWay, TO};
-use super::solve::enclosed;
+use super::on_way::{Changed, FROM, Found, OnWay, TO};
 use super::source::{change_of_duration, source};
 use super::steady::{Steady, mass_in};
 use super::timed::WithError;
 use super::{KnownDensity, PassageError, dot};
 use crate::cancellation::Cancellation;
-use crate::generator::{
-    AbsorbingGenerator, Closure, Dissipation, GeneratorOptions, assemble_absorbing, levels,
-};
+use crate::generator::{AbsorbingGenerator, GeneratorOptions, levels};
 use crate::space::CellSpace;
 use crate::stationary::generator::{Absorbing, AbsorbingSolver, Expected, RateOptions};
 use crate::system::{BoundQuantity, System};
@@ -61,20 +58,20 @@ pub fn reactive(
     };
     are_apart(space, [from, to])?;
     let question = Transitions {
-        asked: Asked {
+        asked: FieldQuestion {
             system,
             space,
             target,
+            options,
+            rates: RateOptions {
+                tolerance: TOLERANCE,
+                ..*rates
+            },
+            cancellation,
         },
         steady: Steady::new(space, density.unknowns),
         changes: density.changes.map(|changes| Steady::bound(space, changes)),
         masses: mass_in(space, &density, from)?,
-        options,
-        rates: RateOptions {
-            tolerance: TOLERANCE,
-            ..*rates
-        },
-        cancellation,
     };
     let [finest, coarse, coarsest] = on_three_grids(|factor| question.on_grid(factor))?;
     let others = [&coarse, &coarsest];
@@ -130,30 +127,16 @@ struct GridTransitions {
 
 /// Transitions with what they are solved with.
 struct Transitions<'a> {
-    asked: Asked<'a>,
+    asked: FieldQuestion<'a>,
     steady: Steady<'a>,
     changes: Option<Steady<'a>>,
     /// The mass in the first region, and its error.
     masses: WithError,
-    options: &'a GeneratorOptions,
-    rates: RateOptions,
-    cancellation: &'a Cancellation,
 }
 
 impl Transitions<'_> {
     fn on_grid(&self, factor: f64) -> Result<GridTransitions, PassageError> {
-        let until = &self.asked.target.until;
-        let found = cells(self.asked.system.as_ref(), self.asked.space, until, factor)?;
-        let enclosed = enclosed(self.asked.system, &found);
-        let assemble = |dissipation, closure| {
-            let scheme = (dissipation, closure);
-            assemble_absorbing(&enclosed, &found.space, until, self.options, scheme)
-        };
-        let generators = [
-            assemble(Dissipation::Full, Closure::Fourth)?,
-            assemble(Dissipation::Half, Closure::Fourth)?,
-            assemble(Dissipation::Full, Closure::Third)?,
-        ];
+        let (found, generators) = self.asked.generators(factor)?;
         let [full, half, third] = &generators;
         let exits = Exits::new(&self.asked.target.exits, &found.space);
         let system = self.asked.system.as_ref();
@@ -162,12 +145,12 @@ impl Transitions<'_> {
         };
         let start = source(full, &self.steady);
         let is_left = start.iter().any(|&rate| rate > 0.0) && start.iter().sum::<f64>() > 0.0;
-        if full.ends.iter().all(|&rate| rate == 0.0) || !is_left {
+        if !is_left {
             return Err(PassageError::Never);
         }
         let matrix = full.matrix();
         let space = &found.space;
-        let mut solver = AbsorbingSolver::new(space, self.rates, self.cancellation);
+        let mut solver = AbsorbingSolver::new(space, self.asked.rates, self.asked.cancellation);
         let (stage, own) = solver.stage(&matrix, &full.ends, &start)?;
         let by_other = |other: &AbsorbingGenerator| {
             let mut left = source(other, &self.steady);

@@ -112,8 +112,7 @@ impl Question<'_> {
             let mut known: [Vec<Survival>; 2] = [Vec::new(), Vec::new()];
             for &times in &groups {
                 let (models, more) = models(&space, [&full, &half], starts, times, settings)?;
-                work.factorisations += more.factorisations;
-                work.passes += more.passes;
+                work.add(more);
                 for (known, model) in known.iter_mut().zip(models) {
                     known.push(model);
                 }

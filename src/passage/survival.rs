@@ -11,8 +11,9 @@ use sprs::CsMat;
 use super::{PassageError, dot};
 use crate::cancellation::Cancellation;
 use crate::generator::AbsorbingGenerator;
+use crate::numerics::bisected;
 use crate::space::CellSpace;
-use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions};
+use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions, product};
 
 /// Vectors from either side at each s.
 const VECTORS: usize = 3;
@@ -77,8 +78,7 @@ pub(super) fn models(
                 row = solver.expected(&stage, &row)?.values();
             }
         }
-        work.factorisations += solver.work.factorisations;
-        work.passes += solver.work.passes;
+        work.add(solver.work);
     }
     // The other scheme is projected on the same vectors: what it changes is right to first order.
     let model = |number: usize| {
@@ -189,15 +189,7 @@ impl ReducedModel {
         let size = columns.len();
         let images: Vec<Vec<f64>> = columns
             .iter()
-            .map(|column| {
-                let mut image = vec![0.0; column.len()];
-                for (rates, &weight) in matrix.outer_iterator().zip(column) {
-                    for (row, rate) in rates.iter() {
-                        image[row] += rate * weight;
-                    }
-                }
-                image
-            })
+            .map(|column| product(matrix, column))
             .collect();
         let overlaps =
             DMatrix::from_fn(size, size, |row, column| dot(&rows[row], &columns[column]));
@@ -241,16 +233,7 @@ impl ReducedModel {
             }
             high *= 2.0;
         }
-        let mut low = 0.0;
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if self.at(middle)[start] > share {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        0.5 * (low + high)
+        bisected((0.0, high), 60, |middle| self.at(middle)[start] > share)
     }
 }
 

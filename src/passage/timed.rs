@@ -116,8 +116,7 @@ pub(crate) fn timed_from(
         for (error, other) in border.iter_mut().zip(&solved.both[0].border) {
             *error = error.max(size * other);
         }
-        work.factorisations += solved.work.factorisations;
-        work.passes += solved.work.passes;
+        work.add(solved.work);
     }
     for (error, border) in errors.iter_mut().zip(border) {
         *error += border;

@@ -22,7 +22,7 @@ use serde_json::{Map, Value, json};
 
 use super::columns::Named;
 use crate::continuation::StateField;
-use crate::density::{EstimatedDensity, Kink, Observable};
+use crate::density::{EstimatedDensity, Kink, Observable, Variants};
 use crate::system::Family;
 
 /// What the array of the parameter is, in words.
@@ -104,16 +104,26 @@ impl Layout {
         first.is_some_and(|(name, _)| name == family.parameter())
     }
 
-    /// The density itself.
-    pub(super) fn density(family: &Family, estimate: &EstimatedDensity) -> Self {
-        let words = words(family, estimate.observable);
-        let layout = Self::of_cells(
-            family,
-            estimate,
-            density(family, estimate.observable),
-            words,
-        );
-        let layout = layout.attribute(NEGLIGIBLE, json!(estimate.negligible));
+    /// One of the parts of a density, but its kinks; of replicates so many.
+    pub(super) fn part(part: Part, family: &Family, estimate: &EstimatedDensity) -> Self {
+        let observable = estimate.observable;
+        let long_name = part.long_name(&words(family, observable));
+        let mut layout = Self::of_cells(family, estimate, part.name(family, observable), long_name);
+        match (part, &estimate.variants) {
+            (Part::Density, _) => return layout.with_facts(family, estimate),
+            (Part::Truncated, _) => layout.dimensions.truncate(1),
+            (Part::Replicates, Variants::Jackknife(all)) => {
+                let count = all.len() as u64;
+                layout.dimensions.insert(1, (REPLICATE.to_owned(), count));
+            }
+            _ => {}
+        }
+        layout
+    }
+
+    /// What is known of a density besides its values.
+    fn with_facts(self, family: &Family, estimate: &EstimatedDensity) -> Self {
+        let layout = self.attribute(NEGLIGIBLE, json!(estimate.negligible));
         let layout = match formulas(family, estimate.observable) {
             Some(formulas) => layout.attribute(FORMULAS, formulas),
             None => layout,
@@ -124,64 +134,6 @@ impl Layout {
         }
     }
 
-    /// Its standard error.
-    pub(super) fn error(family: &Family, estimate: &EstimatedDensity) -> Self {
-        let long_name = format!(
-            "standard error of the {}",
-            words(family, estimate.observable)
-        );
-        Self::of_cells(
-            family,
-            estimate,
-            error(family, estimate.observable),
-            long_name,
-        )
-    }
-
-    /// The density by a second discretisation.
-    pub(super) fn second(family: &Family, estimate: &EstimatedDensity) -> Self {
-        let long_name = format!(
-            "{} by a second discretisation",
-            words(family, estimate.observable)
-        );
-        Self::of_cells(
-            family,
-            estimate,
-            second(family, estimate.observable),
-            long_name,
-        )
-    }
-
-    /// By how much closed ends may change the density.
-    pub(super) fn closed(family: &Family, estimate: &EstimatedDensity) -> Self {
-        let words = words(family, estimate.observable);
-        let long_name = format!("what closed ends of the ranges may change of the {words}");
-        let name = closed(family, estimate.observable);
-        Self::of_cells(family, estimate, name, long_name)
-    }
-
-    /// The share by which the ends of the ranges may have changed all of the density.
-    pub(super) fn truncated(family: &Family, estimate: &EstimatedDensity) -> Self {
-        let words = words(family, estimate.observable);
-        let long_name = format!("share by which ends of the ranges may have changed the {words}");
-        let name = truncated(family, estimate.observable);
-        Self::new(name, vec![(family.parameter().to_owned(), 1)], long_name)
-    }
-
-    /// The densities without one group of samples each.
-    pub(super) fn replicates(family: &Family, estimate: &EstimatedDensity, count: usize) -> Self {
-        let long_name = format!(
-            "{} without one group of samples each",
-            words(family, estimate.observable)
-        );
-        let name = replicates(family, estimate.observable);
-        let mut layout = Self::of_cells(family, estimate, name, long_name);
-        layout
-            .dimensions
-            .insert(1, (REPLICATE.to_owned(), count as u64));
-        layout
-    }
-
     /// The kink of the given number.
     pub(super) fn kink(
         family: &Family,
@@ -189,7 +141,7 @@ impl Layout {
         kink: &Kink,
         number: usize,
     ) -> Self {
-        let name = format!("{}{number}", kink_prefix(family, estimate.observable));
+        let name = format!("{}{number}", Part::Kinks.name(family, estimate.observable));
         let axes = estimate.observable.axes();
         let axis = axes.get(kink.axis).map_or("?", |&axis| family.axis(axis));
         let density = words(family, estimate.observable);
@@ -262,39 +214,61 @@ pub(super) fn edges(axis: &str) -> String {
     format!("{axis}_edges")
 }
 
-/// Name of a density.
-pub(super) fn density(family: &Family, observable: Observable) -> String {
-    format!("p_{}", observable.name(family))
+/// What is stored of a density, an array each.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Part {
+    /// The density itself.
+    Density,
+    /// Its standard error.
+    Error,
+    /// The density by a second discretisation.
+    Second,
+    /// By how much closed ends may change the density.
+    Closed,
+    /// The share by which the ends of the ranges may have changed all of the density.
+    Truncated,
+    /// The densities without one group of samples each.
+    Replicates,
+    /// Its kinks, an array each.
+    Kinks,
 }
 
-/// Name of its standard error.
-pub(super) fn error(family: &Family, observable: Observable) -> String {
-    density(family, observable) + "_error"
+words! {
+    Part, ending: Density: "", Error: "_error", Second: "_second", Closed: "_closed", Truncated: "_truncated",
+    Replicates: "_replicate", Kinks: "_kink_"
 }
 
-/// Name of its second discretisation.
-pub(super) fn second(family: &Family, observable: Observable) -> String {
-    density(family, observable) + "_second"
-}
+impl Part {
+    /// Name of its array; of kinks without their numbers.
+    pub(super) fn name(self, family: &Family, observable: Observable) -> String {
+        format!("p_{}{}", observable.name(family), self.ending())
+    }
 
-/// Name of what closed ends may change of it.
-pub(super) fn closed(family: &Family, observable: Observable) -> String {
-    density(family, observable) + "_closed"
-}
+    /// What it is, before the words for the density.
+    fn before(self) -> &'static str {
+        match self {
+            Self::Density => "",
+            Self::Error => "standard error of the ",
+            Self::Second => "second discretisation of the ",
+            Self::Closed => "what closed ends may change of the ",
+            Self::Truncated => "share by which ends may have changed the ",
+            Self::Replicates => "replicates of the ",
+            Self::Kinks => "kinks of the ",
+        }
+    }
 
-/// Name of the share by which the ends may have changed all of it.
-pub(super) fn truncated(family: &Family, observable: Observable) -> String {
-    density(family, observable) + "_truncated"
-}
-
-/// Name of its replicates.
-pub(super) fn replicates(family: &Family, observable: Observable) -> String {
-    density(family, observable) + "_replicate"
-}
-
-/// Names of its kinks without their numbers.
-pub(super) fn kink_prefix(family: &Family, observable: Observable) -> String {
-    density(family, observable) + "_kink_"
+    /// What it is, as the store says it.
+    fn long_name(self, density: &str) -> String {
+        match self {
+            Self::Second => format!("{density} by a second discretisation"),
+            Self::Closed => format!("what closed ends of the ranges may change of the {density}"),
+            Self::Truncated => {
+                format!("share by which ends of the ranges may have changed the {density}")
+            }
+            Self::Replicates => format!("{density} without one group of samples each"),
+            part => format!("{}{density}", part.before()),
+        }
+    }
 }
 
 /// Name of the error of a field.
@@ -338,21 +312,14 @@ pub(super) fn names(family: &Family, observables: &[Observable]) -> Vec<Named> {
     }
     for &observable in observables {
         let density_of = words(family, observable);
-        let named = |name: fn(&Family, Observable) -> String, what: &str| {
-            Named::new(name(family, observable), format!("{what}{density_of}"))
-        };
-        names.extend([
-            named(density, ""),
-            named(error, "standard error of the "),
-            named(second, "second discretisation of the "),
-            named(closed, "what closed ends may change of the "),
-            named(truncated, "share by which ends may have changed the "),
-            named(replicates, "replicates of the "),
+        let named = |part: Part| {
+            let what = format!("{}{density_of}", part.before());
             Named {
-                is_numbered: true,
-                ..named(kink_prefix, "kinks of the ")
-            },
-        ]);
+                is_numbered: part == Part::Kinks,
+                ..Named::new(part.name(family, observable), what)
+            }
+        };
+        names.extend(Part::ALL.map(named));
     }
     names
 }

@@ -17,10 +17,7 @@ pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), RunError
 /// The same of a file that a user wants anywhere: missing folders on the way are made.
 pub(crate) fn write_anywhere(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     let folder = path.parent().unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder).map_err(|source| RunError::Write {
-        path: folder.to_owned(),
-        source,
-    })?;
+    std::fs::create_dir_all(folder).map_err(RunError::writing(folder))?;
     write_atomically(path, bytes)
 }
 
@@ -43,10 +40,7 @@ pub(super) fn make_below(home: &Path, folder: &Path) -> Result<(), RunError> {
         match std::fs::create_dir(folder) {
             // Somebody else may have made it meanwhile.
             Err(source) if !folder.is_dir() => {
-                return Err(RunError::Write {
-                    path: folder.to_owned(),
-                    source,
-                });
+                return Err(RunError::writing(folder)(source));
             }
             _ => {}
         }
@@ -68,10 +62,7 @@ pub(super) fn begin_durably(path: &Path, bytes: &[u8]) -> Result<File, RunError>
 }
 
 fn write(path: &Path, bytes: &[u8], durably: bool) -> Result<File, RunError> {
-    let failed = |source| RunError::Write {
-        path: path.to_owned(),
-        source,
-    };
+    let failed = RunError::writing(path);
     let folder = path.parent().unwrap_or(Path::new("."));
     let begun = || {
         let mut builder = tempfile::Builder::new();
@@ -115,11 +106,11 @@ pub(super) fn sync_all(places: &[PathBuf]) -> Result<(), RunError> {
         }
     }
     while let Some(path) = open.pop() {
-        for entry in std::fs::read_dir(&path).map_err(|source| unreadable(&path, source))? {
-            let entry = entry.map_err(|source| unreadable(&path, source))?;
+        for entry in std::fs::read_dir(&path).map_err(RunError::reading(&path))? {
+            let entry = entry.map_err(RunError::reading(&path))?;
             // What a folder says of its entries spares thousands of questions.
             let kind = entry.file_type();
-            let kind = kind.map_err(|source| unreadable(&path, source))?;
+            let kind = kind.map_err(RunError::reading(&path))?;
             sort(entry.path(), kind, &mut open);
         }
         folders.push(path);
@@ -130,13 +121,6 @@ pub(super) fn sync_all(places: &[PathBuf]) -> Result<(), RunError> {
         sync_folder(folder);
         Ok(())
     })
-}
-
-fn unreadable(path: &Path, source: std::io::Error) -> RunError {
-    RunError::Read {
-        path: path.to_owned(),
-        source,
-    }
 }
 
 fn sync_each(
@@ -169,10 +153,7 @@ fn sync_file(path: &Path) -> Result<(), RunError> {
     let mut options = File::options();
     options.read(true).write(cfg!(windows));
     let synced = options.open(path).and_then(|file| file.sync_all());
-    synced.map_err(|source| RunError::Write {
-        path: path.to_owned(),
-        source,
-    })
+    synced.map_err(RunError::writing(path))
 }
 
 /// Temporary files are private by default; results should be as readable as any other new file.

@@ -154,10 +154,7 @@ fn add(run: &Path, name: &str, sums: &mut Sums) -> Result<(), RunError> {
 /// Names of a file, or of all files below a folder.
 fn list(run: &Path, name: &str, names: &mut Vec<String>) -> Result<(), RunError> {
     let path = run.join(name);
-    let unreadable = |source| RunError::Read {
-        path: path.clone(),
-        source,
-    };
+    let unreadable = RunError::reading(&path);
     let Ok(found) = std::fs::metadata(&path) else {
         return Ok(());
     };
@@ -178,7 +175,7 @@ fn list(run: &Path, name: &str, names: &mut Vec<String>) -> Result<(), RunError>
     Ok(())
 }
 
-fn sum(bytes: &[u8]) -> String {
+pub(super) fn sum(bytes: &[u8]) -> String {
     let digest = Sha256::digest(bytes);
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
@@ -202,10 +199,7 @@ pub(super) fn read(run: &Path) -> Result<Option<Sums>, RunError> {
     let path = run.join(NAME);
     let text = match read_text(&path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-        text => text.map_err(|source| RunError::Read {
-            path: path.clone(),
-            source,
-        })?,
+        text => text.map_err(RunError::reading(&path))?,
     };
     let mut sums = Sums::new();
     for (index, line) in text.lines().enumerate() {

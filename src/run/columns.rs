@@ -195,10 +195,7 @@ impl<T> Columns<'_, T> {
         complete: bool,
         blank: impl Fn() -> T,
     ) -> Result<Vec<T>, RunError> {
-        let unreadable = |source| RunError::Read {
-            path: path.to_owned(),
-            source,
-        };
+        let unreadable = RunError::reading(path);
         let broken = |error: csv::Error| unreadable(std::io::Error::other(error.to_string()));
         let bytes = super::place::read(path).map_err(unreadable)?;
         let end = bytes.iter().rposition(|&byte| byte == b'\n');

@@ -1,6 +1,6 @@
 //! Why a file of a run could not be written or read, in words.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::continuation::Shard;
 
@@ -303,6 +303,46 @@ pub enum RunError {
         /// Its value.
         value: f64,
     },
+}
+
+impl RunError {
+    /// Of a file or folder that cannot be written, moved or removed.
+    pub(crate) fn writing(path: &Path) -> impl Fn(std::io::Error) -> Self + Copy {
+        |source| Self::Write {
+            path: path.to_owned(),
+            source,
+        }
+    }
+
+    /// Of a file or folder that cannot be read.
+    pub(super) fn reading(path: &Path) -> impl Fn(std::io::Error) -> Self + Copy {
+        |source| Self::Read {
+            path: path.to_owned(),
+            source,
+        }
+    }
+
+    /// Of an array store that cannot be read, or is not what was written.
+    pub(super) fn store<E: std::fmt::Display>(path: &Path) -> impl Fn(E) -> Self {
+        |error| Self::ReadStore {
+            path: path.to_owned(),
+            message: error.to_string(),
+        }
+    }
+
+    /// That what lies in a folder is of the same version and sweep as what is made here.
+    ///
+    /// # Errors
+    /// [`RunError::OtherSweep`].
+    pub(super) fn check_same(folder: &Path, differences: Vec<String>) -> Result<(), Self> {
+        if differences.is_empty() {
+            return Ok(());
+        }
+        Err(Self::OtherSweep {
+            path: folder.to_owned(),
+            differences,
+        })
+    }
 }
 
 /// What became of a file of a run.

@@ -78,29 +78,6 @@ impl RunFolder {
         write_atomically(&self.path.join("run.json"), text.as_bytes())
     }
 
-    /// Adds a point's rows to the tables; its densities are in the journal until the run has ended. What this costs
-    /// does not depend on how many points there are: until [`RunFolder::finish`], rows stand in the order in which the
-    /// points came.
-    ///
-    /// # Errors
-    /// [`RunError`] when a file cannot be composed or written.
-    pub(crate) fn add_point(&mut self, subject: &Subject, point: &Point) -> Result<(), RunError> {
-        let Subject {
-            family,
-            observables,
-            ..
-        } = subject;
-        let rows: Vec<_> = features_table::found(observables, point).collect();
-        let columns = features_table::columns(family);
-        self.features
-            .add(|| columns.header(), &columns.lines(&rows)?)?;
-        let columns = points_table::of_subject(subject);
-        self.points
-            .add(|| columns.header(), &columns.lines([point])?)?;
-        self.added += 1;
-        Ok(())
-    }
-
     /// The same of several points at once, the first of the run: whatever was there of the tables is replaced.
     ///
     /// # Errors

@@ -36,10 +36,7 @@ impl GrowingTable {
         header: impl FnOnce() -> Result<String, RunError>,
         lines: &str,
     ) -> Result<(), RunError> {
-        let failed = |source| RunError::Write {
-            path: self.path.clone(),
-            source,
-        };
+        let failed = RunError::writing(&self.path);
         match &mut self.file {
             // One write a point, so that a kill seldom finds a row half written.
             Some(file) => file.write_all(lines.as_bytes()).map_err(failed),

@@ -75,10 +75,7 @@ impl JobFolder {
     /// the folder is as it was.
     pub(crate) fn open(home: &Path, layout: Layout, goes_on: bool) -> Result<Self, RunError> {
         check_place(home)?;
-        std::fs::create_dir_all(home).map_err(|source| RunError::Write {
-            path: home.to_owned(),
-            source,
-        })?;
+        std::fs::create_dir_all(home).map_err(RunError::writing(home))?;
         let mut kept = None;
         let place = if layout.grows && goes_on {
             let lock = FolderLock::take(home)?;

@@ -152,12 +152,7 @@ impl Layout {
         let made_of = word("made_of").or_else(|| word("sweep_file"));
         let version = word("version").unwrap_or_default();
         let differences = differences(version, made_of.unwrap_or_default(), of);
-        if !differences.is_empty() {
-            return Err(RunError::OtherSweep {
-                path: folder.to_owned(),
-                differences,
-            });
-        }
+        RunError::check_same(folder, differences)?;
         // A shard of a map is written when it is complete, and does not say so.
         let ending = word("ending");
         Ok(ending.is_none_or(|ending| ending == "complete"))

@@ -27,10 +27,7 @@ impl FolderLock {
     /// [`RunError::InUse`] when another process writes to the folder; [`RunError::Write`].
     pub(super) fn take(folder: &Path) -> Result<Self, RunError> {
         let path = folder.join(NAME);
-        let failed = |source| RunError::Write {
-            path: path.clone(),
-            source,
-        };
+        let failed = RunError::writing(&path);
         for _ in 0..TRIES {
             let mut options = OpenOptions::new();
             options.read(true).write(true).create(true).truncate(false);

@@ -1,9 +1,8 @@
 //! `run.json`: what was run, by which version, and how it ended.
 
 use serde::{Deserialize, Serialize};
-use sha2::{Digest as _, Sha256};
 
-use super::{Provenance, RunError};
+use super::{Provenance, RunError, checksums};
 use crate::sweep_file::SweepText;
 
 /// How a run ended.
@@ -146,6 +145,5 @@ impl Manifest {
 
 /// SHA-256 of a resolved sweep file, hexadecimal.
 pub(super) fn hash(resolved: &str) -> String {
-    let digest = Sha256::digest(resolved.as_bytes());
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+    checksums::sum(resolved.as_bytes())
 }

@@ -60,7 +60,8 @@ impl MapShards {
                 continue;
             };
             let wanted = sweep_file.get_or_insert_with(|| found.sweep_file.clone());
-            check(&folder, &found, wanted)?;
+            let differences = differences(&found.version, &found.sweep_file, wanted);
+            RunError::check_same(&folder, differences)?;
             shards.push(MapShard {
                 shard,
                 nodes: found.nodes,
@@ -118,16 +119,4 @@ fn read(folder: &Path) -> Result<Option<Content>, RunError> {
     })?;
     checksums::require(folder, &[FILE])?;
     Ok(Some(content))
-}
-
-/// Refuses a shard of another sweep or version.
-fn check(folder: &Path, found: &Content, sweep: &str) -> Result<(), RunError> {
-    let differences = differences(&found.version, &found.sweep_file, sweep);
-    if differences.is_empty() {
-        return Ok(());
-    }
-    Err(RunError::OtherSweep {
-        path: folder.to_owned(),
-        differences,
-    })
 }

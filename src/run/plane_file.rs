@@ -198,10 +198,7 @@ impl StoredPlane {
         };
         let path = folder.join(NAME);
         let text = read_text(&path);
-        let text = text.map_err(|source| RunError::Read {
-            path: path.clone(),
-            source,
-        })?;
+        let text = text.map_err(RunError::reading(&path))?;
         let broken = |message: String| RunError::Plane {
             path: path.clone(),
             message,

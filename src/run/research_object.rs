@@ -70,10 +70,7 @@ const PARTS: [(&str, &str, &str); 11] = [
 /// [`RunError::Read`], [`RunError::Manifest`] or [`RunError::Write`].
 pub(super) fn write(run: &Path) -> Result<(), RunError> {
     let file = run.join("run.json");
-    let bytes = super::place::read(&file).map_err(|source| RunError::Read {
-        path: file.clone(),
-        source,
-    })?;
+    let bytes = super::place::read(&file).map_err(RunError::reading(&file))?;
     let manifest: Value = serde_json::from_slice(&bytes).map_err(|error| RunError::Manifest {
         path: file,
         message: error.to_string(),

@@ -34,10 +34,7 @@ impl Staging {
         clear_unfinished(home, &[]);
         archive::check_ours(home, entries)?;
         let room = tempfile::Builder::new().prefix(UNFINISHED).tempdir_in(home);
-        let room = room.map_err(|source| RunError::Write {
-            path: home.to_owned(),
-            source,
-        })?;
+        let room = room.map_err(RunError::writing(home))?;
         let staging = Self {
             home: home.to_owned(),
             entries,

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 
 use super::RunError;
-use super::arrays::Layout;
+use super::arrays::{Layout, Part};
 use super::tree::rename;
 use super::zarr::{self, Chunks, Row};
 use crate::UNFINISHED;
@@ -39,10 +39,7 @@ pub(super) fn write_store(
     if points.is_empty() {
         return Ok(());
     }
-    let failed = |source| RunError::Write {
-        path: path.to_owned(),
-        source,
-    };
+    let failed = RunError::writing(path);
     let home = path.parent().unwrap_or(Path::new("."));
     let room = tempfile::Builder::new().prefix(UNFINISHED).tempdir_in(home);
     let room = room.map_err(failed)?;
@@ -116,25 +113,33 @@ impl<'a> Store<'a> {
     fn add_estimate(&mut self, family: &Family, index: usize, estimate: &'a EstimatedDensity) {
         let whole = |values: &'a [f64]| vec![Cow::Borrowed(values)];
         let values = whole(&estimate.density.values);
-        self.put(Layout::density(family, estimate), index, values);
+        self.put(Layout::part(Part::Density, family, estimate), index, values);
         let errors = vec![Cow::Owned(estimate.stated_errors())];
-        self.put(Layout::error(family, estimate), index, errors);
+        self.put(Layout::part(Part::Error, family, estimate), index, errors);
         let truncation = &estimate.truncation;
         if truncation.share > 0.0 {
             let share = vec![vec![truncation.share].into()];
-            self.put(Layout::truncated(family, estimate), index, share);
+            self.put(
+                Layout::part(Part::Truncated, family, estimate),
+                index,
+                share,
+            );
         }
         if !truncation.change.is_empty() {
             let change = whole(&truncation.change);
-            self.put(Layout::closed(family, estimate), index, change);
+            self.put(Layout::part(Part::Closed, family, estimate), index, change);
         }
         match &estimate.variants {
             Variants::None => {}
             Variants::Scheme(second) => {
-                self.put(Layout::second(family, estimate), index, whole(second));
+                self.put(
+                    Layout::part(Part::Second, family, estimate),
+                    index,
+                    whole(second),
+                );
             }
             Variants::Jackknife(replicates) => {
-                let layout = Layout::replicates(family, estimate, replicates.len());
+                let layout = Layout::part(Part::Replicates, family, estimate);
                 let parts = replicates.iter().map(|one| Cow::Borrowed(&one[..]));
                 self.put(layout, index, parts.collect());
             }

@@ -256,12 +256,5 @@ fn is_missing(values: &[f64]) -> bool {
 
 /// An array at one parameter value.
 fn at_index(path: &Path, array: &StoredArray, index: u64) -> Result<Vec<f64>, RunError> {
-    array.row(index).map_err(|error| unreadable(path, error))
-}
-
-fn unreadable(path: &Path, error: impl std::fmt::Display) -> RunError {
-    RunError::ReadStore {
-        path: path.to_owned(),
-        message: error.to_string(),
-    }
+    array.row(index).map_err(RunError::store(path))
 }

@@ -24,11 +24,9 @@ impl StoredFields {
     /// [`RunError::ReadStore`].
     pub(super) fn open(path: &Path, family: &Family, space: &CellSpace) -> Result<Self, RunError> {
         let array = |name: &str| {
-            let failed = |error: std::io::Error| RunError::ReadStore {
-                path: path.to_owned(),
-                message: format!("array `{name}`: {error}"),
-            };
-            StoredArray::open(&path.join(name)).map_err(failed)
+            let array = StoredArray::open(&path.join(name));
+            let words = array.map_err(|error| format!("array `{name}`: {error}"));
+            words.map_err(RunError::store(path))
         };
         let mut fields = Vec::new();
         for one in family.fields() {
@@ -41,7 +39,7 @@ impl StoredFields {
             true => Vec::new(),
             false => array(family.parameter())?
                 .line()
-                .map_err(|error| unreadable(path, &error))?,
+                .map_err(RunError::store(path))?,
         };
         Ok(Self {
             path: path.to_owned(),
@@ -64,7 +62,7 @@ impl StoredFields {
         for (name, [values, errors]) in &self.fields {
             let row = |array: &StoredArray| {
                 let row = array.row(index as u64);
-                row.map_err(|error| unreadable(&self.path, &error))
+                row.map_err(RunError::store(&self.path))
             };
             let (values, errors) = (row(values)?, row(errors)?);
             // No numbers stand for a field that is not known; other cells were written by another file.
@@ -80,12 +78,5 @@ impl StoredFields {
             }
         }
         Ok(all)
-    }
-}
-
-fn unreadable(path: &Path, error: &std::io::Error) -> RunError {
-    RunError::ReadStore {
-        path: path.to_owned(),
-        message: error.to_string(),
     }
 }

@@ -75,10 +75,7 @@ impl StoredRun {
             path: file.clone(),
             message,
         };
-        let bytes = read(&file).map_err(|source| RunError::Read {
-            path: file.clone(),
-            source,
-        })?;
+        let bytes = read(&file).map_err(RunError::reading(&file))?;
         let manifest: StoredManifest =
             serde_json::from_slice(&bytes).map_err(|error| broken(error.to_string()))?;
         check_version(&file, &manifest)?;
@@ -176,13 +173,7 @@ impl StoredRun {
     /// [`RunError::OtherSweep`].
     pub(crate) fn check_sweep(&self, resolved: &str) -> Result<(), RunError> {
         let differences = journal::different_keys(&self.resolved, resolved);
-        match differences.is_empty() {
-            true => Ok(()),
-            false => Err(RunError::OtherSweep {
-                path: self.path.clone(),
-                differences,
-            }),
-        }
+        RunError::check_same(&self.path, differences)
     }
 
     /// Seed of the random streams.

@@ -17,7 +17,7 @@ use crate::space::Axis;
 use crate::system::test_families::coulomb;
 use crate::topology::{Detection, Feature, FeatureErrors, FeatureKind, Signature, Verdict};
 
-fn subject() -> Subject {
+pub(super) fn subject() -> Subject {
     Subject {
         family: coulomb(),
         observables: vec![Observable::Marginal(0), Observable::Joint(0, 1)],
@@ -167,7 +167,8 @@ fn the_store_reads_back_in_ascending_order_with_names() {
     let mut points = Vec::new();
     for (value, solved) in [(0.01, true), (0.0, false), (-0.02, true)] {
         let point = point(value, solved);
-        run.add_point(&subject(), &point).unwrap();
+        run.add_points(&subject(), std::slice::from_ref(&point))
+            .unwrap();
         points.push(point);
     }
     let store = folder.path().join("densities.zarr");
@@ -195,7 +196,8 @@ fn tables_grow_by_rows_and_end_in_ascending_order() {
     let (mut points, mut before) = (Vec::new(), [String::new(), String::new()]);
     for value in [0.3, 0.1, 0.2, 0.25] {
         let point = point(value, value != 0.2);
-        run.add_point(&subject(), &point).unwrap();
+        run.add_points(&subject(), std::slice::from_ref(&point))
+            .unwrap();
         points.push(point);
         // What was written is never written again: the work of a point does not grow with their number.
         for (name, before) in ["points.csv", "features.csv"].iter().zip(&mut before) {

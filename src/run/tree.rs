@@ -12,10 +12,7 @@ use super::place::read;
 /// # Errors
 /// [`RunError::Read`] or [`RunError::Write`].
 pub(super) fn link_tree(from: &Path, to: &Path) -> Result<(), RunError> {
-    let unreadable = |source| RunError::Read {
-        path: from.to_owned(),
-        source,
-    };
+    let unreadable = RunError::reading(from);
     if from.is_dir() {
         make(to)?;
         for entry in std::fs::read_dir(from).map_err(unreadable)? {
@@ -38,12 +35,12 @@ pub(super) fn link(from: &Path, to: &Path) -> Result<(), RunError> {
     }
     // Its folder may not be there yet.
     if let Some(folder) = to.parent().filter(|folder| !folder.is_dir()) {
-        std::fs::create_dir_all(folder).map_err(|source| failed(folder, source))?;
+        std::fs::create_dir_all(folder).map_err(RunError::writing(folder))?;
         if std::fs::hard_link(from, to).is_ok() {
             return Ok(());
         }
     }
-    std::fs::copy(from, to).map_err(|source| failed(to, source))?;
+    std::fs::copy(from, to).map_err(RunError::writing(to))?;
     Ok(())
 }
 
@@ -81,17 +78,10 @@ fn is_same_file(_: &Path, _: &Path) -> bool {
 
 /// Makes a folder that is not there.
 pub(super) fn make(folder: &Path) -> Result<(), RunError> {
-    std::fs::create_dir(folder).map_err(|source| failed(folder, source))
+    std::fs::create_dir(folder).map_err(RunError::writing(folder))
 }
 
 /// Moves a file or folder.
 pub(super) fn rename(from: &Path, to: &Path) -> Result<(), RunError> {
-    std::fs::rename(from, to).map_err(|source| failed(to, source))
-}
-
-fn failed(path: &Path, source: std::io::Error) -> RunError {
-    RunError::Write {
-        path: path.to_owned(),
-        source,
-    }
+    std::fs::rename(from, to).map_err(RunError::writing(to))
 }

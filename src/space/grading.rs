@@ -1,5 +1,7 @@
 //! The grading of an axis: its law, and the stretches between graded points that hold whole numbers of cells.
 
+use crate::numerics::bisected;
+
 /// Share of the cells that a graded axis spreads evenly over its range.
 pub(super) const BULK_SHARE: f64 = 0.6;
 
@@ -136,19 +138,8 @@ impl Piece {
         if self.is_even() {
             return self.from + (self.to - self.from) * coordinate / self.cells as f64;
         }
-        let (mut low, mut high) = (self.from, self.to);
-        for _ in 0..200 {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                break;
-            }
-            if self.coordinate(middle) < coordinate {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        0.5 * (low + high)
+        let is_first = |middle: f64| self.coordinate(middle) < coordinate;
+        bisected((self.from, self.to), 200, is_first)
     }
 }
 

@@ -7,6 +7,7 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::series::Rule;
+use crate::numerics::bisected;
 
 /// Standard deviations on either side of the mean that an axis of Hermite modes spans at least: 2e-9 of the mass lies
 /// beyond.
@@ -111,16 +112,7 @@ pub(super) fn normal_edges(rule: &Rule) -> Vec<f64> {
 
 /// The x with ∫_{-∞}^x of the standard normal density = `share`, up to 1/2 or a little more, by bisection.
 fn normal_quantile(share: f64) -> f64 {
-    let (mut low, mut high) = (-37.0, 37.0);
-    for _ in 0..100 {
-        let middle = 0.5 * (low + high);
-        if normal_below(middle) < share {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    0.5 * (low + high)
+    bisected((-37.0, 37.0), 100, |middle| normal_below(middle) < share)
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@
 //! ln A(δ) = 1/(2π) ∫ ln(1 - e^{-δ (λ² + 1/4)}) dλ/(λ² + 1/4).
 //! What both leave out is of the order of T/ΔV.
 
+use crate::numerics::bisected;
 use crate::system::DampedParticle;
 
 /// Places along the range at which the force's sign is looked at.
@@ -31,7 +32,7 @@ const GAUSS: [(f64, f64); 3] = [
 
 /// Rates over a barrier by formulas, per unit of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EscapeFormulas {
+pub(crate) struct EscapeFormulas {
     /// By Kramers' formula for moderate and strong damping.
     pub kramers: f64,
     /// The same with Mel'nikov and Meshkov's factor, for all damping.
@@ -41,7 +42,7 @@ pub struct EscapeFormulas {
 /// The rates at which a particle goes from the deepest bottom in one region to the deepest in another; regions are told
 /// by whether a position at rest is inside. `None` where they have no bottoms within a range, where more than one top
 /// is between, or where a well does not end.
-pub fn escape_formulas(
+pub(crate) fn escape_formulas(
     particle: &DampedParticle,
     range: (f64, f64),
     [from, to]: [&dyn Fn(f64) -> bool; 2],
@@ -109,17 +110,9 @@ fn zeros(particle: &DampedParticle, (from, to): (f64, f64)) -> Vec<f64> {
 }
 
 /// Where a condition changes between two places.
-fn halved(condition: impl Fn(f64) -> bool, mut low: f64, mut high: f64) -> f64 {
+fn halved(condition: impl Fn(f64) -> bool, low: f64, high: f64) -> f64 {
     let first = condition(low);
-    for _ in 0..100 {
-        let middle = 0.5 * (low + high);
-        if condition(middle) == first {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    0.5 * (low + high)
+    bisected((low, high), 100, |middle| condition(middle) == first)
 }
 
 fn panel(f: &impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {

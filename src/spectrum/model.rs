@@ -4,6 +4,8 @@ use nalgebra::{Complex, DMatrix, DVector};
 use sprs::CsMat;
 
 use super::transfer::Transfer;
+use crate::numerics::dot;
+use crate::stationary::generator::product;
 
 /// Overlaps of the two spaces smaller than this beside the largest are rounding.
 const NOTHING: f64 = 1e-11;
@@ -211,31 +213,6 @@ pub(super) fn in_order<T>(modes: &mut [T], value: impl Fn(&T) -> Complex<f64>) {
             first = end;
         }
     }
-}
-
-/// a·b, in a fixed order of eight sums, which run at once.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 8];
-    let (left, right) = (a.chunks_exact(8), b.chunks_exact(8));
-    let rest = left.remainder().iter().zip(right.remainder());
-    let tail: f64 = rest.map(|(a, b)| a * b).sum();
-    for (a, b) in left.zip(right) {
-        for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
-            *sum += a * b;
-        }
-    }
-    sums.iter().sum::<f64>() + tail
-}
-
-/// A x.
-pub(super) fn product(matrix: &CsMat<f64>, vector: &[f64]) -> Vec<f64> {
-    let mut image = vec![0.0; vector.len()];
-    for (rates, &weight) in matrix.outer_iterator().zip(vector) {
-        for (row, rate) in rates.iter() {
-            image[row] += rate * weight;
-        }
-    }
-    image
 }
 
 /// What belongs to an eigenvalue of a model.

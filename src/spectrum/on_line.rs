@@ -5,8 +5,7 @@
 
 use nalgebra::DMatrix;
 
-use super::peak::{Peak, Shape, steepest_rise};
-use super::power::{FEATURES, features};
+use super::power::{FEATURES, features, features_of};
 use super::slow::UNKNOWN;
 use super::transfer::Transfer;
 use super::{PowerQuestion, SlowMode, SlowModes, Spectrum};
@@ -194,16 +193,7 @@ fn numbers(
             .map(|pole| pole.norm())
             .fold(f64::INFINITY, f64::min);
         let highest = question.frequencies.last().copied().unwrap_or(0.0);
-        let shape = Shape::new(model, one, highest.max(slowest));
-        let peak = Peak::of(&shape);
-        let [at_zero, _, bend] = model.power_and_slopes(0.0, one);
-        all.extend([
-            peak.map_or(f64::NAN, |peak| peak.frequency),
-            peak.and_then(|peak| peak.width).unwrap_or(f64::NAN),
-            0.5 * at_zero / model.covariance(one, one),
-            bend / at_zero,
-            steepest_rise(&shape).unwrap_or(f64::NAN),
-        ]);
+        all.extend(features_of(model, one, highest.max(slowest)));
     }
     all.extend(model.correlations((one, other), step, count).0);
     all

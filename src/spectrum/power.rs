@@ -219,6 +219,20 @@ fn on_grid(
     Ok((found, resolvent.work))
 }
 
+/// The numbers from which [`Features`] are told, of a power spectrum up to a frequency.
+pub(super) fn features_of(transfer: &Transfer, one: usize, highest: f64) -> [f64; FEATURES] {
+    let shape = Shape::new(transfer, one, highest);
+    let peak = Peak::of(&shape);
+    let [at_zero, _, bend] = transfer.power_and_slopes(0.0, one);
+    [
+        peak.map_or(f64::NAN, |peak| peak.frequency),
+        peak.and_then(|peak| peak.width).unwrap_or(f64::NAN),
+        0.5 * at_zero / transfer.covariance(one, one),
+        bend / at_zero,
+        steepest_rise(&shape).unwrap_or(f64::NAN),
+    ]
+}
+
 /// The numbers of a pair by one model.
 fn numbers(
     transfer: &Transfer,
@@ -232,17 +246,7 @@ fn numbers(
     if one == other {
         let highest = question.frequencies.last().copied().unwrap_or(0.0);
         all = frequencies.map(|&at| transfer.power(at, one)).collect();
-        let shape = Shape::new(transfer, one, highest.max(motion.rate));
-        let peak = Peak::of(&shape);
-        let [at_zero, _, bend] = transfer.power_and_slopes(0.0, one);
-        let variance = transfer.covariance(one, one);
-        all.extend([
-            peak.map_or(f64::NAN, |peak| peak.frequency),
-            peak.and_then(|peak| peak.width).unwrap_or(f64::NAN),
-            0.5 * at_zero / variance,
-            bend / at_zero,
-            steepest_rise(&shape).unwrap_or(f64::NAN),
-        ]);
+        all.extend(features_of(transfer, one, highest.max(motion.rate)));
     } else {
         let cross = frequencies.map(|&at| transfer.cross(at, (one, other)));
         let cross: Vec<_> = cross.collect();

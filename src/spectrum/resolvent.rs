@@ -4,13 +4,13 @@ use nalgebra::{Complex, DMatrix};
 
 use super::at_frequency::AtFrequency;
 use super::grid::{Grid, ending};
-use super::model::{Basis, Products, ReducedModel, balanced, product};
+use super::model::{Basis, Products, ReducedModel, balanced};
 use super::motion::Motion;
 use super::transfer::Transfer;
 use super::{SpectrumError, dot};
 use crate::cancellation::Cancellation;
 use crate::stationary::generator::{
-    AbsorbingSolver, AbsorbingWork, RateError, RateOptions, RateSolver, ShiftedPattern,
+    AbsorbingSolver, AbsorbingWork, RateError, RateOptions, RateSolver, ShiftedPattern, product,
     transposed_product,
 };
 

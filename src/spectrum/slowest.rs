@@ -12,11 +12,11 @@ use super::dot;
 use super::errors::Worked;
 use super::grid::{Grid, ending};
 use super::grid_mode::GridMode;
-use super::model::{balanced, product};
+use super::model::balanced;
 use super::modes::{ARTEFACT, GridModes, SEED};
 use super::motion::{Motion, of_ends};
 use crate::cancellation::Cancellation;
-use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions};
+use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions, product};
 
 /// First shift, over the rate at which states change.
 const FIRST: f64 = 1e-2;

@@ -362,12 +362,6 @@ impl Draft {
     pub(super) fn bins(&self, name: &str) -> Option<&BinsDraft> {
         self.bins.iter().find(|bins| bins.name == name)
     }
-
-    /// Gives a parameter its value.
-    pub(super) fn set_parameter(&mut self, name: &str, value: f64) {
-        self.parameters.retain(|(known, _)| known != name);
-        self.parameters.push((name.to_owned(), value));
-    }
 }
 
 /// The entry of a name, made where there is none; `name_of` is where an entry has its name.

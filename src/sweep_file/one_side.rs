@@ -6,6 +6,7 @@ use super::draft::MethodKind;
 use super::settings::{Grade, Settings};
 use super::verify::short;
 use crate::method::pilot_box;
+use crate::numerics::narrowed;
 use crate::system::{System, natural_ends};
 
 /// Parts of the sweep at whose ends an axis is looked at.
@@ -192,15 +193,9 @@ fn first_zero_of_noise(
     let keeps_sign = |here: f64, next: f64| here * next > 0.0;
     let part =
         (1..LOOKS).find(|&part| !keeps_sign(amplitude(at(part)), amplitude(at(part + 1))))?;
-    let (mut low, mut high) = (at(part), at(part + 1));
-    let sign = amplitude(low).signum();
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        match amplitude(middle) * sign > 0.0 {
-            true => low = middle,
-            false => high = middle,
-        }
-    }
+    let sign = amplitude(at(part)).signum();
+    let ends = (at(part), at(part + 1));
+    let (low, high) = narrowed(ends, HALVINGS, |middle| amplitude(middle) * sign > 0.0);
     [high, low].into_iter().find(|&end| amplitude(end) == 0.0)
 }
 

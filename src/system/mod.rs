@@ -77,10 +77,11 @@ pub use spectrum::{Band, Fluctuating, Sides, SpectrumQuestion};
 pub(crate) use symmetry::{proved_symmetry, symmetry_over_a_period};
 pub(crate) use tangent::TangentFault;
 pub(crate) use tangent::{HALF_TURN, Tangent};
+pub(crate) use typed::DampedParticle;
 pub(crate) use typed::FormulaHazard;
 pub use typed::{
-    CompiledDrift, DampedParticle, FormulaPlace, Interpretation, PeriodFault, TypedEquations,
-    TypedModel, TypedModelError,
+    CompiledDrift, FormulaPlace, Interpretation, PeriodFault, TypedEquations, TypedModel,
+    TypedModelError,
 };
 
 /// An Itô equation dX = a(X, t) dt + Σ_k b_k(X, t) e_{axis(k)} dW_k with bound parameters.

@@ -2,6 +2,7 @@
 
 use super::ends::closed_ends;
 use super::{LANES, Lanes, Symmetry, System};
+use crate::numerics::bisected;
 
 /// Relative difference of drift or noise at a state and its image that is rounding.
 const ROUNDING: f64 = 1e-9;
@@ -101,25 +102,14 @@ fn on_turns(system: &dyn System, centres: &[Vec<f64>]) -> Vec<Vec<f64>> {
             let half = 0.5 * (to - from);
             let chosen = |x: f64| x - half * ((x - middle) / half - SAME_PLACE).round();
             let crossed = (0..LOOKS).filter(|&k| values[k] * values[k + 1] < 0.0);
-            found.extend(
-                crossed.map(|k| at(chosen(zero(&drift, (place(k), place(k + 1)), values[k])))),
-            );
+            let zero = |k: usize| {
+                let ends = (place(k), place(k + 1));
+                bisected(ends, HALVINGS, |x| drift(x) * values[k] > 0.0)
+            };
+            found.extend(crossed.map(|k| at(chosen(zero(k)))));
         }
     }
     found
-}
-
-/// The zero of a function between two places at which its signs differ; `first` is its value at the lower one.
-fn zero(function: &impl Fn(f64) -> f64, (mut low, mut high): (f64, f64), first: f64) -> f64 {
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if function(middle) * first > 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    0.5 * (low + high)
 }
 
 /// Whether drift and noise at the images of states are the images of those at the states.

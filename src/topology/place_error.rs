@@ -10,7 +10,8 @@ use super::critical::{Critical, FLAT};
 use super::field::Field;
 use super::refine::refine;
 use super::{Feature, FeatureErrors, FeatureKind};
-use crate::density::{EstimatedDensity, Variants, jackknife};
+use crate::density::{EstimatedDensity, Variants};
+use crate::numerics::jackknife;
 
 /// The errors of a feature of a density.
 pub(super) fn errors(estimated: &EstimatedDensity, feature: &Feature) -> FeatureErrors {
@@ -87,10 +88,7 @@ fn by_replicates(
         refine(&variant, cell, feature.kind)
     };
     let read: Vec<_> = replicates.iter().map(&mut read).collect();
-    let of = |number: &dyn Fn(&super::extremum::Vertex) -> f64| {
-        let values: Vec<f64> = read.iter().map(number).collect();
-        jackknife(&values)
-    };
+    let of = |number: &dyn Fn(&super::extremum::Vertex) -> f64| jackknife(read.iter().map(number));
     let along = |k: usize| of(&|one| one.position[k]);
     (read.len() > 1).then(|| FeatureErrors {
         position: (0..feature.position.len()).map(along).collect(),

@@ -9,29 +9,30 @@ use std::path::{Path, PathBuf};
 const ALLOWED: &[(&str, &[&str])] = &[
     ("cancellation", &[]),
     ("bytes", &[]),
+    ("numerics", &[]),
     ("formula", &[]),
-    ("system", &["formula"]),
+    ("system", &["numerics", "formula"]),
     ("exponent", &["system"]),
-    ("space", &[]),
+    ("space", &["numerics"]),
     ("sampling", &["cancellation", "system", "space"]),
-    ("monte_carlo", &["cancellation", "system", "space", "sampling"]),
-    ("density", &["bytes", "system", "space"]),
+    ("monte_carlo", &["numerics", "cancellation", "system", "space", "sampling"]),
+    ("density", &["numerics", "bytes", "system", "space"]),
     ("generator", &["system", "space", "density"]),
-    ("stationary", &["cancellation", "space", "sampling"]),
-    ("passage", &["cancellation", "system", "space", "density", "generator", "stationary"]),
-    ("spectrum", &["cancellation", "system", "space", "generator", "stationary"]),
-    ("topology", &["space", "density"]),
-    ("continuation", &["cancellation", "system", "exponent", "space", "density", "topology", "bytes"]),
+    ("stationary", &["numerics", "cancellation", "space", "sampling"]),
+    ("passage", &["numerics", "cancellation", "system", "space", "density", "generator", "stationary"]),
+    ("spectrum", &["numerics", "cancellation", "system", "space", "generator", "stationary"]),
+    ("topology", &["numerics", "space", "density"]),
+    ("continuation", &["numerics", "cancellation", "system", "exponent", "space", "density", "topology", "bytes"]),
     ("method", &[
-        "cancellation", "system", "exponent", "space", "sampling", "monte_carlo", "generator", "stationary", "passage",
+        "numerics", "cancellation", "system", "exponent", "space", "sampling", "monte_carlo", "generator", "stationary", "passage",
         "spectrum", "density", "topology", "continuation", "bytes"
     ]),
     ("compare", &[
-        "cancellation", "system", "space", "sampling", "monte_carlo", "density", "continuation", "method"
+        "numerics", "cancellation", "system", "space", "sampling", "monte_carlo", "density", "continuation", "method"
     ]),
     ("figure", &["formula", "system", "space", "density", "topology", "continuation", "compare"]),
     ("sweep_file", &[
-        "formula", "cancellation", "system", "exponent", "space", "sampling", "generator", "stationary", "density",
+        "numerics", "formula", "cancellation", "system", "exponent", "space", "sampling", "generator", "stationary", "density",
         "topology", "continuation", "method", "figure"
     ]),
     ("run", &[

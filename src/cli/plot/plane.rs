@@ -26,7 +26,7 @@ pub(super) fn run(
         let report = Diagnostic::new("`--at` is for the run of a sweep")
             .allowed("of a map and of curves the figures of the whole plane")
             .remedy("leave it out; `--only map_x` draws the map of x alone");
-        return Err(CommandError::Input(report.into()));
+        return Err(report.into());
     }
     check_overrides(overrides, &["figures"])?;
     let mut file = SweepFile::parse("the stored sweep", stored.resolved());

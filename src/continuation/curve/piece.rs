@@ -3,6 +3,7 @@
 use super::found::{Curve, CurvePoint};
 use super::walked::apart;
 use crate::continuation::Doubt;
+use crate::numerics::bisected;
 
 /// Curves at a smaller angle do not cross, but run along each other.
 const SLANTED: f64 = 0.02;
@@ -130,18 +131,7 @@ impl Piece {
         let share = match end {
             Some((_, share)) => share,
             None if begins * ends > 0.0 || !(begins * ends).is_finite() => return None,
-            None => {
-                let (mut low, mut high) = (0.0, 1.0);
-                for _ in 0..HALVINGS {
-                    let middle = 0.5 * (low + high);
-                    if beyond(middle) * begins > 0.0 {
-                        low = middle
-                    } else {
-                        high = middle
-                    }
-                }
-                0.5 * (low + high)
-            }
+            None => bisected((0.0, 1.0), HALVINGS, |share| beyond(share) * begins > 0.0),
         };
         let (at, along) = self.at(share);
         let length = along[0].hypot(along[1]);

@@ -3,6 +3,7 @@
 
 use super::walked::{apart, within};
 use super::{CurveOptions, EndReason};
+use crate::numerics::narrowed;
 
 /// A place nearer to the curve than this is on it; nothing is left of the box where less than this is.
 pub(super) const CLOSE: f64 = 1e-4;
@@ -102,15 +103,7 @@ fn predict(
     if within(at(step)) {
         return Some((at(step), None));
     }
-    let (mut low, mut high) = (0.0, step);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if within(at(middle)) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
+    let (low, high) = narrowed((0.0, step), 60, |middle| within(at(middle)));
     if low < CLOSE {
         return None;
     }

@@ -1,7 +1,7 @@
 //! Where an expression is not smooth.
 
 use crate::formula::arithmetic::{Binary, Unary, small_integer};
-use crate::formula::graph::{Expression, Graph, Node, PartMap, Symbol, TooLarge};
+use crate::formula::graph::{Builder, Expression, Graph, Node, Symbol, TooLarge};
 use crate::formula::limits;
 
 /// How an expression fails to be smooth.
@@ -252,24 +252,13 @@ impl Graph {
         part: Expression,
         by: Symbol,
     ) -> Result<Expression, TooLarge> {
-        let parts = self.parts(&[expression]);
-        let mut replaced = PartMap::new(&parts, expression);
-        self.build(|builder| {
-            let symbol = builder.symbol(by);
-            for &own in &parts {
-                let of = |operand: Expression| replaced.get(operand).unwrap_or(operand);
-                let new = match builder.graph().node(own) {
-                    _ if own == part => symbol,
-                    Node::Constant(_) | Node::Symbol(_) => own,
-                    Node::Unary(operation, a) => builder.unary(operation, of(a)),
-                    Node::Binary(operation, a, b) => builder.binary(operation, of(a), of(b)),
-                    Node::Select(condition, yes, no) => {
-                        builder.select(of(condition), of(yes), of(no))
-                    }
-                };
-                replaced.set(own, new);
+        let symbol = self.build(|builder| builder.symbol(by))?;
+        let replaced = self.remade(&[expression], |builder, own, replaced| {
+            if own == part {
+                return symbol;
             }
-            replaced.get(expression).unwrap_or(expression)
-        })
+            builder.remade(own, replaced, Builder::binary)
+        })?;
+        Ok(replaced.get(expression).unwrap_or(expression))
     }
 }

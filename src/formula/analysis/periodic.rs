@@ -100,41 +100,15 @@ impl Graph {
         expressions: &[Expression],
         arguments: &[(Expression, Expression)],
     ) -> Result<Vec<Expression>, TooLarge> {
-        let parts = self.parts(expressions);
-        let Some(&first) = parts.first() else {
-            return Ok(Vec::new());
-        };
-        let mut replaced = PartMap::new(&parts, first);
-        self.build(|builder| {
-            for &part in &parts {
-                let given = arguments.iter().find(|(wave, _)| *wave == part);
-                let new = rebuilt(
-                    builder,
-                    part,
-                    given.map(|(_, argument)| *argument),
-                    &replaced,
-                );
-                replaced.set(part, new);
+        let replaced = self.remade(expressions, |builder, part, replaced| {
+            let given = arguments.iter().find(|(wave, _)| *wave == part);
+            match (builder.graph().node(part), given) {
+                (Node::Unary(wave, _), Some((_, argument))) => builder.unary(wave, *argument),
+                _ => builder.remade(part, replaced, Builder::binary),
             }
-            let new = expressions.iter();
-            new.map(|&one| replaced.get(one).unwrap_or(one)).collect()
-        })
-    }
-}
-
-/// A part with what its operands were replaced by, or with another argument.
-fn rebuilt(
-    builder: &mut Builder<'_>,
-    part: Expression,
-    argument: Option<Expression>,
-    replaced: &PartMap<Expression>,
-) -> Expression {
-    let of = |operand: Expression| replaced.get(operand).unwrap_or(operand);
-    match builder.graph().node(part) {
-        Node::Constant(_) | Node::Symbol(_) => part,
-        Node::Unary(operation, a) => builder.unary(operation, argument.unwrap_or(of(a))),
-        Node::Binary(operation, a, b) => builder.binary(operation, of(a), of(b)),
-        Node::Select(condition, yes, no) => builder.select(of(condition), of(yes), of(no)),
+        })?;
+        let new = expressions.iter();
+        Ok(new.map(|&one| replaced.get(one).unwrap_or(one)).collect())
     }
 }
 
@@ -144,10 +118,7 @@ mod tests {
     use crate::formula::scope::{Scope, Symbols};
 
     fn scope() -> Scope {
-        let mut symbols = Symbols::default();
-        symbols.add_state("x").unwrap();
-        symbols.add_parameter("w").unwrap();
-        Scope::new(symbols).unwrap()
+        Scope::new(Symbols::of(&["x"], &["w"])).unwrap()
     }
 
     fn waves(text: &str) -> Result<usize, String> {

@@ -8,14 +8,7 @@ use crate::formula::graph::{Expression, Point, Symbol};
 use crate::formula::scope::{Scope, Symbols};
 
 fn scope() -> Scope {
-    let mut symbols = Symbols::default();
-    for name in ["x", "y", "z"] {
-        symbols.add_state(name).unwrap();
-    }
-    for name in ["a", "b", "d"] {
-        symbols.add_parameter(name).unwrap();
-    }
-    Scope::new(symbols).unwrap()
+    Scope::new(Symbols::of(&["x", "y", "z"], &["a", "b", "d"])).unwrap()
 }
 
 fn formula(scope: &mut Scope, text: &str) -> Expression {

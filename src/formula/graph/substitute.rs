@@ -1,6 +1,7 @@
-//! Puts numbers for parameters.
+//! Makes expressions anew with something else in the place of some of their parts.
 
-use super::{Expression, Graph, Node, PartMap, Symbol, TooLarge};
+use super::{Builder, Expression, Graph, Node, PartMap, Symbol, TooLarge};
+use crate::formula::arithmetic::Binary;
 
 impl Graph {
     /// The expression with numbers for all parameters, and products with a zero among them gone: zero times x counts
@@ -17,25 +18,53 @@ impl Graph {
             let numbers = parameters.iter().map(|&value| builder.constant(value));
             numbers.collect::<Vec<_>>()
         })?;
-        let parts = self.parts(&[expression]);
-        let mut replaced = PartMap::new(&parts, expression);
+        let bound = self.remade(&[expression], |builder, part, replaced| {
+            match builder.graph().node(part) {
+                Node::Symbol(Symbol::Parameter(number)) => {
+                    numbers.get(number).copied().unwrap_or(part)
+                }
+                _ => builder.remade(part, replaced, Builder::reduced),
+            }
+        })?;
+        Ok(bound.get(expression).unwrap_or(expression))
+    }
+
+    /// What stands for each part of expressions, operands before what is made of them: `new` is told the part and what
+    /// stands for its operands.
+    ///
+    /// # Errors
+    /// [`TooLarge`].
+    pub(crate) fn remade(
+        &mut self,
+        expressions: &[Expression],
+        new: impl Fn(&mut Builder<'_>, Expression, &PartMap<Expression>) -> Expression,
+    ) -> Result<PartMap<Expression>, TooLarge> {
+        let parts = self.parts(expressions);
+        let mut replaced = PartMap::new(&parts, Expression(0));
         self.build(|builder| {
             for &part in &parts {
-                let of = |operand: Expression| replaced.get(operand).unwrap_or(operand);
-                let new = match builder.graph().node(part) {
-                    Node::Symbol(Symbol::Parameter(number)) => {
-                        numbers.get(number).copied().unwrap_or(part)
-                    }
-                    Node::Constant(_) | Node::Symbol(_) => part,
-                    Node::Unary(operation, a) => builder.unary(operation, of(a)),
-                    Node::Binary(operation, a, b) => builder.reduced(operation, of(a), of(b)),
-                    Node::Select(condition, yes, no) => {
-                        builder.select(of(condition), of(yes), of(no))
-                    }
-                };
+                let new = new(builder, part, &replaced);
                 replaced.set(part, new);
             }
-            replaced.get(expression).unwrap_or(expression)
-        })
+        })?;
+        Ok(replaced)
+    }
+}
+
+impl Builder<'_> {
+    /// A part of what stands for its operands, with `binary` for the operations of two.
+    pub(crate) fn remade(
+        &mut self,
+        part: Expression,
+        replaced: &PartMap<Expression>,
+        binary: impl Fn(&mut Self, Binary, Expression, Expression) -> Expression,
+    ) -> Expression {
+        let of = |operand: Expression| replaced.get(operand).unwrap_or(operand);
+        match self.graph().node(part) {
+            Node::Constant(_) | Node::Symbol(_) => part,
+            Node::Unary(operation, a) => self.unary(operation, of(a)),
+            Node::Binary(operation, a, b) => binary(self, operation, of(a), of(b)),
+            Node::Select(condition, yes, no) => self.select(of(condition), of(yes), of(no)),
+        }
     }
 }

@@ -4,14 +4,7 @@ use super::*;
 use crate::formula::scope::{Scope, Symbols};
 
 fn scope() -> Scope {
-    let mut symbols = Symbols::default();
-    for name in ["x", "y"] {
-        symbols.add_state(name).unwrap();
-    }
-    for name in ["a", "b"] {
-        symbols.add_parameter(name).unwrap();
-    }
-    Scope::new(symbols).unwrap()
+    Scope::new(Symbols::of(&["x", "y"], &["a", "b"])).unwrap()
 }
 
 fn assert_same(left: &str, right: &str) {

@@ -3,13 +3,7 @@
 use crate::formula::scope::{Scope, Symbols};
 
 fn scope() -> Scope {
-    let mut symbols = Symbols::default();
-    for name in ["x", "y"] {
-        symbols.add_state(name).unwrap();
-    }
-    for name in ["c0", "c1", "omega", "alpha", "f_c", "D1"] {
-        symbols.add_parameter(name).unwrap();
-    }
+    let mut symbols = Symbols::of(&["x", "y"], &["c0", "c1", "omega", "alpha", "f_c", "D1"]);
     symbols.define("H", "y^2/2 + ω² x²/2").unwrap();
     symbols.define("k", "alpha").unwrap();
     Scope::new(symbols).unwrap()

@@ -109,6 +109,19 @@ pub struct Symbols {
 }
 
 impl Symbols {
+    /// Coordinates and parameters of these names.
+    #[cfg(test)]
+    pub(in crate::formula) fn of(states: &[&str], parameters: &[&str]) -> Self {
+        let mut symbols = Self::default();
+        for name in states {
+            symbols.add_state(name).unwrap();
+        }
+        for name in parameters {
+            symbols.add_parameter(name).unwrap();
+        }
+        symbols
+    }
+
     /// Adds a coordinate of the state; they are numbered in the order in which they are added.
     ///
     /// # Errors

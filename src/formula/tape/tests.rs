@@ -14,14 +14,11 @@ const PARAMETERS: [(&str, f64); 5] = [
 ];
 
 fn scope() -> Scope {
-    let mut symbols = Symbols::default();
-    for name in ["x", "y", "z"] {
-        symbols.add_state(name).unwrap();
-    }
-    for (name, _) in PARAMETERS {
-        symbols.add_parameter(name).unwrap();
-    }
-    Scope::new(symbols).unwrap()
+    Scope::new(Symbols::of(
+        &["x", "y", "z"],
+        &PARAMETERS.map(|(name, _)| name),
+    ))
+    .unwrap()
 }
 
 fn values() -> Vec<f64> {

@@ -78,7 +78,8 @@ impl Observer for Recorder<'_> {
         }
         self.folder.check()?;
         self.write_held()?;
-        self.run.add_point(self.sweep.problem.subject(), point)?;
+        self.run
+            .add_points(self.sweep.problem.subject(), std::slice::from_ref(point))?;
         self.say(point, done, done + remaining);
         self.manifest.points = done;
         Ok(self.run.write_progress(&self.manifest)?)

@@ -192,6 +192,7 @@ fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::distance;
 
     fn trail(values: &[f64], curve: impl Fn(f64) -> Vec<f64>) -> Trail {
         values.iter().fold(Trail::default(), |trail, &value| {
@@ -204,10 +205,6 @@ mod tests {
             };
             trail.with(point, None)
         })
-    }
-
-    fn distance(a: &[f64], b: &[f64]) -> f64 {
-        a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum()
     }
 
     #[test]

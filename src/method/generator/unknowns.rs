@@ -25,11 +25,6 @@ pub(super) fn summed_over_modes(space: &CellSpace, masses: &[f64]) -> Vec<f64> {
     summed
 }
 
-/// Σ |a - b|.
-pub(super) fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum()
-}
-
 /// Σ |min(mass, 0)|.
 pub(super) fn negative_mass(masses: &[f64]) -> f64 {
     masses.iter().map(|mass| (-mass).max(0.0)).sum()

@@ -8,8 +8,9 @@
 use super::{Cells, DerivedMeasure, MeasureInput, Others};
 use crate::continuation::{Finding, Measure, MeasureKind};
 use crate::density::Observable;
-use crate::density::{Roughness, excess_variances, jackknife};
+use crate::density::{Roughness, excess_variances};
 use crate::method::lattice::for_all_nodes;
+use crate::numerics::jackknife;
 use crate::system::{Family, LANES, Lanes, System};
 
 pub(super) const BALANCE: DerivedMeasure = DerivedMeasure {
@@ -186,7 +187,7 @@ impl Terms {
             Others::Replicates([] | [_]) => None,
             Others::Replicates(all) => {
                 let values: Vec<f64> = all.iter().map(|one| relative(one)).collect();
-                Some(jackknife(&values) + widened(cells, pair))
+                Some(jackknife(values.iter().copied()) + widened(cells, pair))
             }
         };
         Balance {

@@ -51,12 +51,24 @@ fn is_particle(family: &Family) -> bool {
 
 /// The columns of the rates over a barrier by formulas, beside those between two states.
 fn formula_columns(question: &PassageQuestion) -> impl Iterator<Item = MeasureColumn> {
-    let both = [PASSAGE_KRAMERS, PASSAGE_MELNIKOV].into_iter();
-    both.filter(|_| question.switching)
-        .map(|kind| MeasureColumn {
-            kind,
-            of: question.name.clone(),
-        })
+    columns_if(
+        question.switching,
+        question,
+        [PASSAGE_KRAMERS, PASSAGE_MELNIKOV],
+    )
+}
+
+/// The columns of some measures of a passage where they are asked for.
+fn columns_if<const N: usize>(
+    is_asked: bool,
+    question: &PassageQuestion,
+    kinds: [MeasureKind; N],
+) -> impl Iterator<Item = MeasureColumn> {
+    let kinds = kinds.into_iter().filter(move |_| is_asked);
+    kinds.map(|kind| MeasureColumn {
+        kind,
+        of: question.name.clone(),
+    })
 }
 
 /// The rates over a barrier by formulas as measures.
@@ -72,22 +84,13 @@ pub(in crate::method) fn formula_measures(
 
 /// The columns of the rates between two states.
 fn rates_between(question: &PassageQuestion) -> impl Iterator<Item = MeasureColumn> {
-    let both = [PASSAGE_THERE, PASSAGE_BACK].into_iter();
-    both.filter(|_| question.switching)
-        .map(|kind| MeasureColumn {
-            kind,
-            of: question.name.clone(),
-        })
+    columns_if(question.switching, question, [PASSAGE_THERE, PASSAGE_BACK])
 }
 
 /// The columns of transitions between two regions.
 fn transition_columns(question: &PassageQuestion) -> impl Iterator<Item = MeasureColumn> {
-    let all = [TRANSITION_FLUX, TRANSITION_RATE, TRANSITION_TIME].into_iter();
-    all.filter(|_| question.transitions.is_some())
-        .map(|kind| MeasureColumn {
-            kind,
-            of: question.name.clone(),
-        })
+    let kinds = [TRANSITION_FLUX, TRANSITION_RATE, TRANSITION_TIME];
+    columns_if(question.transitions.is_some(), question, kinds)
 }
 
 /// Transitions between two regions as measures: flux, rate and duration.

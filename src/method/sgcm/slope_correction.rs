@@ -9,6 +9,7 @@
 use super::Correction;
 use crate::MAX_DIMENSION;
 use crate::method::MethodError;
+use crate::numerics::distance;
 use crate::sampling::{SampledTransitions, TransitionMatrix};
 use crate::space::CellSpace;
 use crate::stationary::{Options, Outcome, SteadyState, solve};
@@ -64,7 +65,7 @@ pub fn solve_corrected(
             work.0 += steady.info.iterations;
             work.1 += steady.info.matrix_passes;
             (steady.info.iterations, steady.info.matrix_passes) = work;
-            change = l1(start.unwrap_or(&[]), &steady.mass);
+            change = distance(start.unwrap_or(&[]), &steady.mass);
             let settled = last.is_some() && change < largest_change;
             if transitions.keeps_starts() && !settled {
                 if rounds < MOST_ROUNDS {
@@ -109,10 +110,6 @@ pub(super) fn solve_by(
         rounds: 1,
         change: 0.0,
     })
-}
-
-fn l1(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum()
 }
 
 #[cfg(test)]

@@ -4,22 +4,20 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use super::super::arrays::Part;
 use super::super::number::format_number;
 use super::super::{RunError, write_anywhere};
 use crate::continuation::{Point, Subject};
 use crate::space::Axis;
+use crate::system::Family;
 
 /// Writes `p_x.csv`, `p_xy.csv`, … into a folder: parameter, coordinates of the cell's centre, density, standard error;
 /// and the same of fields of passages, `exit_mean_time.csv`, ….
 pub(super) fn write(subject: &Subject, points: &[&Point], folder: &Path) -> Result<(), RunError> {
     let family = &subject.family;
     for (index, observable) in subject.observables.iter().enumerate() {
-        let name = super::arrays::density(family, *observable);
-        let mut text = family.parameter().to_owned();
-        for axis in observable.axes() {
-            text += &format!(",{}", family.axis(axis));
-        }
-        text += &format!(",{name},{name}_error\n");
+        let name = Part::Density.name(family, *observable);
+        let mut text = header(family, &observable.axes(), &name);
         for point in points {
             if let Some(one) = point.densities.get(index) {
                 let numbers = (one.density.values.as_slice(), one.stated_errors());
@@ -29,18 +27,13 @@ pub(super) fn write(subject: &Subject, points: &[&Point], folder: &Path) -> Resu
         write_anywhere(&folder.join(format!("{name}.csv")), text.as_bytes())?;
     }
     let fields = || points.iter().flat_map(|point| &point.report.fields);
-    let mut names: Vec<&str> = fields().map(|field| field.name.as_str()).collect();
     let mut known = std::collections::BTreeSet::new();
-    names.retain(|name| known.insert(*name));
-    for name in names {
-        let mut text = family.parameter().to_owned();
-        let like = fields().find(|field| field.name == name);
-        for axis in 0..like.map_or(0, |field| field.axes.len()) {
-            text += &format!(",{}", family.axis(axis));
-        }
-        text += &format!(",{name},{name}_error\n");
+    for like in fields().filter(|field| known.insert(field.name.as_str())) {
+        let name = &like.name;
+        let axes: Vec<usize> = (0..like.axes.len()).collect();
+        let mut text = header(family, &axes, name);
         for point in points {
-            let own = point.report.fields.iter().filter(|one| one.name == name);
+            let own = point.report.fields.iter().filter(|one| one.name == *name);
             for field in own {
                 let numbers = (field.values.as_slice(), field.errors.clone());
                 add(&mut text, point.value, &field.axes, numbers);
@@ -49,6 +42,13 @@ pub(super) fn write(subject: &Subject, points: &[&Point], folder: &Path) -> Resu
         write_anywhere(&folder.join(format!("{name}.csv")), text.as_bytes())?;
     }
     Ok(())
+}
+
+/// The names of the columns: the parameter, axes, and what is tabulated with its error.
+fn header(family: &Family, axes: &[usize], name: &str) -> String {
+    let axes = axes.iter().map(|&axis| family.axis(axis));
+    let names: Vec<&str> = [family.parameter()].into_iter().chain(axes).collect();
+    format!("{},{name},{name}_error\n", names.join(","))
 }
 
 /// The rows of a point: numbers with their errors at the cells of one axis or two, but where there are none.

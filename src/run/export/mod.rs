@@ -5,7 +5,7 @@ mod netcdf;
 
 use std::path::Path;
 
-use super::arrays::Layout;
+use super::arrays::{Layout, Part};
 use super::{RunError, arrays, bifurcations_csv};
 use crate::continuation::measure::{DEVIATION, MEAN};
 use crate::continuation::{MeasureKind, Point, StateField, SweepResult};
@@ -275,16 +275,16 @@ fn density_arrays(
         _ => None,
     };
     let mut arrays = vec![
-        all(arrays::density(family, observable), &density, "density")
+        all(Part::Density.name(family, observable), &density, "density")
             .with("valid_min", Attribute::Number(0.0)),
         all(
-            arrays::error(family, observable),
+            Part::Error.name(family, observable),
             &error,
             "standard error of the density",
         ),
     ];
     if matches!(like.variants, Variants::Scheme(_)) {
-        let name = arrays::second(family, observable);
+        let name = Part::Second.name(family, observable);
         arrays.push(all(name, &second, "density by a second discretisation"));
     }
     arrays

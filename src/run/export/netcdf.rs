@@ -26,10 +26,7 @@ pub(super) fn write(data: &DataSet, path: &Path) -> Result<(), RunError> {
         path: path.to_owned(),
         message,
     })?;
-    let written = |source| RunError::Write {
-        path: path.to_owned(),
-        source,
-    };
+    let written = RunError::writing(path);
     let folder = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty());

@@ -2,19 +2,10 @@
 
 use super::*;
 use crate::continuation::measure::{DEVIATION, MEAN};
-use crate::continuation::{CellCheck, Measure, SolveReport, Subject};
+use crate::continuation::{Measure, SolveReport};
 use crate::density::{Density, Observable};
+use crate::run::tests::subject;
 use crate::space::Axis;
-use crate::system::test_families::coulomb;
-
-fn subject() -> Subject {
-    Subject {
-        family: coulomb(),
-        observables: vec![Observable::Marginal(0), Observable::Joint(0, 1)],
-        measures: Vec::new(),
-        cell_check: CellCheck::Needless,
-    }
-}
 
 /// Densities of 2 and 2 × 3 cells whose values are their numbers.
 fn point(value: f64, solved: bool) -> Point {

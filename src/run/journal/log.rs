@@ -61,10 +61,7 @@ impl Log {
         of: &str,
         each: &mut Each<'_>,
     ) -> Result<Self, RunError> {
-        let unreadable = |source| RunError::Read {
-            path: path.clone(),
-            source,
-        };
+        let unreadable = RunError::reading(&path);
         take_own_copy(&path).map_err(unreadable)?;
         let mut file = match File::options().read(true).write(true).open(&path) {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
@@ -86,10 +83,7 @@ impl Log {
     /// # Errors
     /// As [`Log::open`], whatever work it is of.
     pub(in crate::run) fn look(path: PathBuf, each: &mut Each<'_>) -> Result<Self, RunError> {
-        let file = File::open(&path).map_err(|source| RunError::Read {
-            path: path.clone(),
-            source,
-        })?;
+        let file = File::open(&path).map_err(RunError::reading(&path))?;
         go_through(&path, &file, None, each)?;
         Ok(Self::at(path, file))
     }
@@ -117,8 +111,7 @@ impl Log {
             file.seek(SeekFrom::Start(place.start))?;
             file.read_exact(&mut content)
         });
-        let path = self.path.clone();
-        read.map_err(|source| RunError::Read { path, source })?;
+        read.map_err(RunError::reading(&self.path))?;
         Ok(content)
     }
 
@@ -128,10 +121,10 @@ impl Log {
     /// [`RunError::Write`], also where the disk did not take those before.
     pub(in crate::run) fn append(&mut self, content: &[u8]) -> Result<(), RunError> {
         let written = self.file.write_all(&frame(content));
-        written.map_err(|source| self.error(source))?;
+        written.map_err(RunError::writing(&self.path))?;
         let is_free = self.waiting.as_ref().is_none_or(JoinHandle::is_finished);
         if is_free && self.asked.elapsed() >= BETWEEN_WAITS {
-            self.ask().map_err(|source| self.error(source))?;
+            self.ask().map_err(RunError::writing(&self.path))?;
             self.asked = Instant::now();
         }
         Ok(())
@@ -153,13 +146,6 @@ impl Log {
         }
         Ok(())
     }
-
-    fn error(&self, source: std::io::Error) -> RunError {
-        RunError::Write {
-            path: self.path.clone(),
-            source,
-        }
-    }
 }
 
 /// Gives `each` all whole records of a file but the first, which must be of this work; the end of the last one.
@@ -169,10 +155,7 @@ fn go_through(
     of: Option<&str>,
     each: &mut Each<'_>,
 ) -> Result<u64, RunError> {
-    let unreadable = |source| RunError::Read {
-        path: path.to_owned(),
-        source,
-    };
+    let unreadable = RunError::reading(path);
     let broken = || RunError::Journal {
         path: path.to_owned(),
     };
@@ -275,12 +258,6 @@ fn check_sweep(path: &Path, first: &[u8], resolved: &str) -> Result<(), RunError
     let (version, sweep) = first.map_err(|_| RunError::Journal {
         path: path.to_owned(),
     })?;
-    let differences = differences(&version, &sweep, resolved);
-    if differences.is_empty() {
-        return Ok(());
-    }
-    Err(RunError::OtherSweep {
-        path: path.parent().unwrap_or(path).to_owned(),
-        differences,
-    })
+    let folder = path.parent().unwrap_or(path);
+    RunError::check_same(folder, differences(&version, &sweep, resolved))
 }

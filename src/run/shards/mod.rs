@@ -91,14 +91,10 @@ impl Shards {
     /// # Errors
     /// [`RunError::MissingShards`].
     pub(crate) fn check_complete(&self) -> Result<(), RunError> {
-        if self.missing.is_empty() {
-            return Ok(());
+        match self.missing.is_empty() {
+            true => Ok(()),
+            false => Err(self.lacking()),
         }
-        Err(RunError::MissingShards {
-            path: self.path.clone(),
-            of: self.of,
-            missing: self.missing.clone(),
-        })
     }
 
     /// A run whose sweep is that of all.
@@ -106,13 +102,14 @@ impl Shards {
     /// # Errors
     /// [`RunError::MissingShards`] when none has begun.
     pub(crate) fn any(&self) -> Result<&StoredRun, RunError> {
-        match self.runs.first() {
-            Some(run) => Ok(run),
-            None => Err(RunError::MissingShards {
-                path: self.path.clone(),
-                of: self.of,
-                missing: self.missing.clone(),
-            }),
+        self.runs.first().ok_or_else(|| self.lacking())
+    }
+
+    fn lacking(&self) -> RunError {
+        RunError::MissingShards {
+            path: self.path.clone(),
+            of: self.of,
+            missing: self.missing.clone(),
         }
     }
 

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::{Observed, StoredKink, unreadable};
+use super::super::arrays::Part;
+use super::{Observed, StoredKink};
 use crate::density::{NEGLIGIBLE, Observable, layout_axis};
 use crate::run::place::check_files;
 use crate::run::zarr::StoredArray;
@@ -23,7 +24,7 @@ impl Opened {
     pub(super) fn new(path: &Path) -> Result<Self, RunError> {
         // Pipes would be waited for.
         check_files(path)?;
-        let entries = std::fs::read_dir(path).map_err(|error| unreadable(path, error))?;
+        let entries = std::fs::read_dir(path).map_err(RunError::store(path))?;
         let mut names: Vec<String> = entries
             .flatten()
             .filter(|entry| entry.path().is_dir())
@@ -36,13 +37,17 @@ impl Opened {
         })
     }
 
+    fn unreadable(&self, words: String) -> RunError {
+        RunError::store(&self.path)(words)
+    }
+
     fn has(&self, name: &str) -> bool {
         self.names.iter().any(|known| known == name)
     }
 
     fn array(&self, name: &str) -> Result<StoredArray, RunError> {
         StoredArray::open(&self.path.join(name))
-            .map_err(|error| unreadable(&self.path, format!("array `{name}`: {error}")))
+            .map_err(|error| self.unreadable(format!("array `{name}`: {error}")))
     }
 
     fn optional(&self, name: &str, shape: &[u64]) -> Result<Option<StoredArray>, RunError> {
@@ -55,14 +60,14 @@ impl Opened {
         let found = array.shape();
         if found.len() <= shape.len() || !found.ends_with(shape) {
             let words = format!("array `{name}` has shape {found:?}, not (parameter, {shape:?})");
-            return Err(unreadable(&self.path, words));
+            return Err(self.unreadable(words));
         }
         Ok(array)
     }
 
     pub(super) fn whole(&self, name: &str) -> Result<Vec<f64>, RunError> {
         let line = self.array(name)?.line();
-        line.map_err(|error| unreadable(&self.path, format!("array `{name}`: {error}")))
+        line.map_err(|error| self.unreadable(format!("array `{name}`: {error}")))
     }
 
     pub(super) fn observed(
@@ -71,7 +76,7 @@ impl Opened {
         (space, bins): (&CellSpace, &[Axis]),
         observable: Observable,
     ) -> Result<Observed, RunError> {
-        let name = arrays::density(family, observable);
+        let name = Part::Density.name(family, observable);
         if !self.has(&name) {
             return Err(RunError::NotStored {
                 observable: observable.name(family),
@@ -108,11 +113,11 @@ impl Opened {
         let negligible = negligible.and_then(Value::as_f64);
         Ok(Observed {
             observable,
-            error: self.shaped(&arrays::error(family, observable), &shape)?,
-            second: self.optional(&arrays::second(family, observable), &shape)?,
-            truncated: self.optional(&arrays::truncated(family, observable), &[])?,
-            closed: self.optional(&arrays::closed(family, observable), &shape)?,
-            replicates: self.optional(&arrays::replicates(family, observable), &shape)?,
+            error: self.shaped(&Part::Error.name(family, observable), &shape)?,
+            second: self.optional(&Part::Second.name(family, observable), &shape)?,
+            truncated: self.optional(&Part::Truncated.name(family, observable), &[])?,
+            closed: self.optional(&Part::Closed.name(family, observable), &shape)?,
+            replicates: self.optional(&Part::Replicates.name(family, observable), &shape)?,
             centre: centre.filter(|centre| centre.len() == axes.len()),
             kinks: self.kinks(family, observable, &shape)?,
             negligible: negligible.unwrap_or(NEGLIGIBLE),
@@ -128,7 +133,7 @@ impl Opened {
         observable: Observable,
         shape: &[u64],
     ) -> Result<Vec<StoredKink>, RunError> {
-        let prefix = arrays::kink_prefix(family, observable);
+        let prefix = Part::Kinks.name(family, observable);
         let names = self.names.iter().filter(|name| name.starts_with(&prefix));
         names
             .map(|name| {
@@ -141,7 +146,7 @@ impl Opened {
                 let bends = attributes.contains_key(arrays::KINK_BENDS);
                 let (Some(axis), Some(at)) = (axis, at) else {
                     let words = format!("array `{name}` does not say on which plane it stands");
-                    return Err(unreadable(&self.path, words));
+                    return Err(self.unreadable(words));
                 };
                 let mut rest = shape.to_vec();
                 rest.remove(axis);

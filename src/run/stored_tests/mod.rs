@@ -149,7 +149,8 @@ const RESOLVED: &str = "title = \"t\"\nfrom = 0.30000000000000004\n";
 fn write(folder: &std::path::Path, points: &[Point]) {
     let mut run = RunFolder::at(folder);
     for point in points {
-        run.add_point(&subject(&OBSERVABLES), point).unwrap();
+        run.add_points(&subject(&OBSERVABLES), std::slice::from_ref(point))
+            .unwrap();
     }
     let densities = points.iter().filter(|point| !point.densities.is_empty());
     let densities =

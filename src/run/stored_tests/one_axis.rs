@@ -52,7 +52,8 @@ fn values_by_quadrature_and_on_cells_come_back_as_they_were_solved() {
         let folder = tempfile::tempdir().unwrap();
         let mut run = RunFolder::at(folder.path());
         for point in &points {
-            run.add_point(source.subject(), point).unwrap();
+            run.add_points(source.subject(), std::slice::from_ref(point))
+                .unwrap();
         }
         let densities = points
             .iter()

@@ -16,7 +16,7 @@ mod stage;
 
 use sprs::CsMat;
 
-use super::balance::{add_product, dot, transposed_product};
+use super::balance::{dot, product, transposed_product};
 use super::narrowing;
 use super::newton::{FirstPass, refined};
 use super::passes::{Seat, run_alone, together};
@@ -90,9 +90,7 @@ struct Visits {
 impl Absorbing<'_> {
     /// Q z.
     pub(crate) fn balance(&self, times: &[f64]) -> Vec<f64> {
-        let mut out = vec![0.0; times.len()];
-        add_product(self.matrix, times, &mut out);
-        out
+        product(self.matrix, times)
     }
 
     /// w·Q z, with the product Q z at hand.
@@ -221,7 +219,7 @@ impl<'s> AbsorbingSolver<'s> {
             }
         };
         let sources = starts.map(|start| without(start, stage.held));
-        let operator = |x: &[f64]| product((stage.matrix, stage.held), x, false);
+        let operator = |x: &[f64]| applied((stage.matrix, stage.held), x, false);
         let seats = [Seat::default(), Seat::default()];
         let effort = (self.options.tolerance, self.options.max_iterations);
         let [one, other] = [0, 1].map(|at| {
@@ -287,7 +285,7 @@ impl<'s> AbsorbingSolver<'s> {
         if source.iter().all(|&value| value == 0.0) {
             return Ok(source.to_vec());
         }
-        let operator = |x: &[f64]| product((matrix, held), x, is_transposed);
+        let operator = |x: &[f64]| applied((matrix, held), x, is_transposed);
         let seat = Seat::default();
         let effort = (self.options.tolerance, self.options.max_iterations);
         let source = (source, self.first);
@@ -317,13 +315,10 @@ fn clear(values: &mut [f64], held: usize) {
 }
 
 /// Q x (Qᵀ x where it is transposed), zero at the cell that is held.
-fn product((matrix, held): (&CsMat<f64>, usize), x: &[f64], is_transposed: bool) -> Vec<f64> {
-    let mut out = if is_transposed {
-        transposed_product(matrix, x)
-    } else {
-        let mut out = vec![0.0; x.len()];
-        add_product(matrix, x, &mut out);
-        out
+fn applied((matrix, held): (&CsMat<f64>, usize), x: &[f64], is_transposed: bool) -> Vec<f64> {
+    let mut out = match is_transposed {
+        true => transposed_product(matrix, x),
+        false => product(matrix, x),
     };
     clear(&mut out, held);
     out

@@ -29,6 +29,13 @@ pub(super) fn add_product(matrix: &CsMat<f64>, x: &[f64], out: &mut [f64]) {
     }
 }
 
+/// Q x.
+pub(crate) fn product(matrix: &CsMat<f64>, x: &[f64]) -> Vec<f64> {
+    let mut out = vec![0.0; x.len()];
+    add_product(matrix, x, &mut out);
+    out
+}
+
 /// Qᵀ x.
 pub(crate) fn transposed_product(matrix: &CsMat<f64>, x: &[f64]) -> Vec<f64> {
     let columns = matrix.outer_iterator();

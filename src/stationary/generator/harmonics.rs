@@ -22,17 +22,10 @@ use sprs::CsMat;
 
 use super::dissection::Dissection;
 use super::modewise::Layout;
-use super::scaled::{Scaled, factors};
+use super::scaled::{Scaled, TRIED, factors, is_held_well, largest};
 use super::symbolic::Symbolic;
 use crate::cancellation::{Cancellation, Cancelled};
 use blocks::{Blocks, Wave, blocks};
-
-/// Share of its largest mass that the averaged generator's steady state must have in the held cell: with less, another
-/// cell is held.
-const LEAST_HELD: f64 = 0.1;
-
-/// Cells that are tried one after the other.
-const TRIED: usize = 3;
 
 /// The factors.
 pub(super) struct HarmonicFactors {
@@ -86,7 +79,7 @@ impl HarmonicFactors {
             let mean = factors(&symbolic, rates, Some(position), cancellation)?;
             let null = steady(&symbolic, &blocks, &mean, (place, position));
             let best = largest(&null);
-            if null[place].abs() >= LEAST_HELD * null[best].abs() || tried == TRIED {
+            if is_held_well(&null, place, best) || tried == TRIED {
                 return Ok(Self {
                     layout,
                     symbolic,
@@ -282,16 +275,6 @@ impl HarmonicFactors {
         let numbers = self.symbolic.factor_entries() * self.layout.modes();
         (numbers * size_of::<f32>()) as u64 + self.blocks.bytes()
     }
-}
-
-/// The place with the largest mass, whatever its sign.
-fn largest(masses: &[f64]) -> usize {
-    (0..masses.len()).fold(0, |best, place| {
-        match masses[place].abs() > masses[best].abs() {
-            true => place,
-            false => best,
-        }
-    })
 }
 
 /// Steady state of the averaged generator, one at the held place.

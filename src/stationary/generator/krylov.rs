@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::passes::Seat;
 use crate::cancellation::{Cancellation, Cancelled};
+use crate::numerics::dot;
 
 /// What a run of GMRES gave.
 pub(super) struct Outcome {
@@ -29,24 +30,6 @@ pub(super) struct Limits {
     pub(super) iterations: usize,
     /// Whether to stop as soon as the trend says that the limit will not do.
     pub(super) give_up_early: bool,
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    // Eight partial sums in a fixed order: fast, and the same everywhere.
-    let mut sums = [0.0; 8];
-    let (left, right) = (a.chunks_exact(8), b.chunks_exact(8));
-    let tail: f64 = left
-        .remainder()
-        .iter()
-        .zip(right.remainder())
-        .map(|(x, y)| x * y)
-        .sum();
-    for (x, y) in left.zip(right) {
-        for lane in 0..8 {
-            sums[lane] += x[lane] * y[lane];
-        }
-    }
-    sums.iter().sum::<f64>() + tail
 }
 
 fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {

@@ -54,7 +54,7 @@ mod updates;
 
 pub use absorbing::AbsorbingWork;
 pub(crate) use absorbing::{Absorbing, AbsorbingSolver, Expected, FactorMemory};
-pub(crate) use balance::{dot, transposed_product};
+pub(crate) use balance::{dot, product, transposed_product};
 pub(crate) use memory::SolverMemory;
 pub use preconditioner::{Estimate, RateMethod, estimate};
 pub(crate) use shifted::{Shifted, ShiftedPattern};

@@ -16,19 +16,12 @@ use rayon::prelude::*;
 use sprs::CsMat;
 
 use super::dissection::Dissection;
-use super::scaled::{Scaled, factors, hold};
+use super::scaled::{Scaled, TRIED, factors, hold, is_held_well, largest};
 use super::symbolic::Symbolic;
-use super::triangular::{self, transposed::solve_transposed};
+use super::triangular::{self, transposed::product, transposed::solve_transposed};
 use crate::cancellation::{Cancellation, Cancelled};
 use layout::blocks;
 pub(super) use layout::{Layout, has_phase, others};
-
-/// Share of its largest mass that the stand-in's own steady state must have in the held cell: with less, another cell
-/// is held.
-const LEAST_HELD: f64 = 0.1;
-
-/// Cells that are tried one after the other.
-const TRIED: usize = 3;
 
 /// The factors.
 pub(super) struct ModeFactors {
@@ -86,15 +79,8 @@ impl ModeFactors {
         let lowest = rates(0);
         for tried in 1..=TRIED {
             this.null = this.steady(&pattern, &lowest);
-            let size = |cell: usize| this.null[cell].abs();
-            let cells = 0..this.null.len();
-            let best = cells.fold(
-                this.held,
-                |best, cell| {
-                    if size(cell) > size(best) { cell } else { best }
-                },
-            );
-            if size(this.held) >= LEAST_HELD * size(best) || tried == TRIED {
+            let best = largest(&this.null);
+            if is_held_well(&this.null, this.held, best) || tried == TRIED {
                 break;
             }
             this.held = best;
@@ -250,18 +236,4 @@ fn mode_factors(
         order.position(|&place| place as usize == held)
     });
     factors(symbolic, rates, position, cancellation)
-}
-
-/// Σ a b, in a fixed order.
-fn product(rates: &[f32], moments: &[f64]) -> f64 {
-    let mut sums = [0.0; 8];
-    let (left, right) = (rates.chunks_exact(8), moments.chunks_exact(8));
-    let rest = left.remainder().iter().zip(right.remainder());
-    let tail: f64 = rest.map(|(a, b)| f64::from(*a) * b).sum();
-    for (a, b) in left.zip(right) {
-        for lane in 0..8 {
-            sums[lane] += f64::from(a[lane]) * b[lane];
-        }
-    }
-    sums.iter().sum::<f64>() + tail
 }

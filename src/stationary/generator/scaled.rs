@@ -15,6 +15,28 @@ pub(super) struct Scaled<T> {
     pub(super) scale: f64,
 }
 
+/// Share of its largest mass that a stand-in's own steady state must have in the held cell: with less, another cell is
+/// held.
+const LEAST_HELD: f64 = 0.1;
+
+/// Cells that are tried one after the other.
+pub(super) const TRIED: usize = 3;
+
+/// Whether the steady state of a stand-in has mass enough at the held place, beside that with the largest.
+pub(super) fn is_held_well(masses: &[f64], held: usize, largest: usize) -> bool {
+    masses[held].abs() >= LEAST_HELD * masses[largest].abs()
+}
+
+/// The place with the largest mass, whatever its sign.
+pub(super) fn largest(masses: &[f64]) -> usize {
+    (0..masses.len()).fold(0, |best, place| {
+        match masses[place].abs() > masses[best].abs() {
+            true => place,
+            false => best,
+        }
+    })
+}
+
 /// Takes a place out of rates by columns of a pattern: nothing comes from it, and nothing goes to it.
 pub(super) fn hold(rates: &mut [f64], pattern: &CsMat<f64>, place: usize) {
     let starts = pattern.indptr();

@@ -131,7 +131,7 @@ mod tests {
             p = next;
         }
         // Four plain steps would leave 0.9⁴ = 0.66 of the slow mode; the regularisation leaves about 1e-9.
-        let error = super::super::chain::distance(&p, &[0.2, 0.3, 0.5]);
+        let error = crate::numerics::distance(&p, &[0.2, 0.3, 0.5]);
         assert!(error < 1e-7, "{error}");
     }
 }

@@ -221,8 +221,3 @@ pub(super) fn normalise(p: &mut [f64], floor: f64) {
         *value /= total;
     }
 }
-
-/// L1 distance of two vectors.
-pub(super) fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum()
-}

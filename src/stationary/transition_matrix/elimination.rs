@@ -78,7 +78,7 @@ impl Eliminated {
         }
         for _ in 0..MOST_REINJECTIONS {
             let next = self.reinject(&mass);
-            let change = super::chain::distance(&next, &mass);
+            let change = crate::numerics::distance(&next, &mass);
             mass = next;
             if change < 1e-15 * self.n as f64 {
                 break;

@@ -10,11 +10,12 @@ use rayon::prelude::*;
 
 use super::Options;
 use super::acceleration::Acceleration;
-use super::chain::{Chain, distance, normalise};
+use super::chain::{Chain, normalise};
 use super::convergence::Contraction;
 use super::elimination::Eliminated;
 use super::hierarchy::{Level, levels};
 use crate::cancellation::{Cancellation, Cancelled};
+use crate::numerics::distance;
 
 /// Masses are kept above this: a zero could never be corrected by a factor.
 const SMALLEST_MASS: f64 = 1e-200;

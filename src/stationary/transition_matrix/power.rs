@@ -2,11 +2,12 @@
 
 use std::f64::consts::PI;
 
-use super::chain::{Chain, distance, normalise};
+use super::chain::{Chain, normalise};
 use super::convergence::Contraction;
 use super::multilevel::Iterate;
 use super::{Options, second_eigenvalue};
 use crate::cancellation::Cancelled;
+use crate::numerics::distance;
 
 /// Steps over which the contraction is observed.
 const WINDOW: usize = 20;

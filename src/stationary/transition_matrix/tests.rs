@@ -7,6 +7,7 @@ mod sampled;
 use sprs::{CsMat, TriMat};
 
 use super::{Info, Options, Outcome, Solver, SteadyState, solve};
+use crate::numerics::distance;
 use crate::sampling::TransitionMatrix;
 use crate::space::{Axis, CellSpace};
 
@@ -64,10 +65,6 @@ fn steady(
         }
         other => panic!("{other:?}"),
     }
-}
-
-fn distance(a: &[f64], b: &[f64]) -> f64 {
-    super::chain::distance(a, b)
 }
 
 /// Masses scaled to Σ = 1.

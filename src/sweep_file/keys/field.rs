@@ -15,13 +15,13 @@ pub(in crate::sweep_file) struct Field {
 }
 
 /// The entry of a name.
-pub(super) fn formulas_of<T: Formulas>(entries: &[(String, T)], name: &str) -> Option<Plain> {
+pub(super) fn entry_of<T: Formulas>(entries: &[(String, T)], name: &str) -> Option<Plain> {
     let entry = entries.iter().find(|(known, _)| known == name)?;
     Some(entry.1.written())
 }
 
 /// Takes the entry of a name.
-pub(super) fn set_formulas<T: Formulas>(entries: &mut Vec<(String, T)>, name: &str, plain: &Plain) {
+pub(super) fn set_entry<T: Formulas>(entries: &mut Vec<(String, T)>, name: &str, plain: &Plain) {
     if let Some(value) = T::read(plain) {
         entries.retain(|(known, _)| known != name);
         entries.push((name.to_owned(), value));
@@ -97,7 +97,7 @@ pub(super) const BOUNDS: Field = Field {
         let ends = ends.map(|(_, ends)| {
             Plain::List(ends.map(|end| Plain::Text(end.name().to_owned())).into())
         });
-        formulas_of(&draft.equations.bounds, name).or(ends).or(word)
+        entry_of(&draft.equations.bounds, name).or(ends).or(word)
     },
     set: |draft, name, plain| match (ends_of(plain), plain.text()) {
         (Some(ends), _) => {
@@ -105,7 +105,7 @@ pub(super) const BOUNDS: Field = Field {
             draft.equations.ends.push((name.to_owned(), ends));
         }
         (None, Some(_)) => draft.equations.set_angle(name, std::f64::consts::TAU),
-        (None, None) => set_formulas(&mut draft.equations.bounds, name, plain),
+        (None, None) => set_entry(&mut draft.equations.bounds, name, plain),
     },
 };
 
@@ -123,14 +123,12 @@ pub(super) const PERIOD: Field = Field {
     },
 };
 
-/// A table of formulas by names.
-macro_rules! formulas {
-    ($field:ident) => {
+/// A table of formulas or numbers by names.
+macro_rules! entries {
+    ($($field:ident).+) => {
         Field {
-            get: |draft, name| super::field::formulas_of(&draft.equations.$field, name),
-            set: |draft, name, plain| {
-                super::field::set_formulas(&mut draft.equations.$field, name, plain)
-            },
+            get: |draft, name| super::field::entry_of(&draft.$($field).+, name),
+            set: |draft, name, plain| super::field::set_entry(&mut draft.$($field).+, name, plain),
         }
     };
 }
@@ -189,4 +187,4 @@ macro_rules! of_methods {
     };
 }
 
-pub(super) use {always, formulas, of_axis, of_bins, of_methods, of_passage, optional};
+pub(super) use {always, entries, of_axis, of_bins, of_methods, of_passage, optional};

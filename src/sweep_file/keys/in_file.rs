@@ -67,7 +67,7 @@ fn formula(plain: &Plain) -> Option<String> {
     }
 }
 
-/// What the file says of a name in one of its tables of formulas.
+/// What the file says of a name in one of its tables of formulas or numbers.
 pub(super) trait Formulas: Clone {
     fn written(&self) -> Plain;
     fn read(plain: &Plain) -> Option<Self>;
@@ -80,6 +80,16 @@ impl Formulas for String {
 
     fn read(plain: &Plain) -> Option<Self> {
         formula(plain)
+    }
+}
+
+impl Formulas for f64 {
+    fn written(&self) -> Plain {
+        self.to_plain()
+    }
+
+    fn read(plain: &Plain) -> Option<Self> {
+        Self::from_plain(plain)
     }
 }
 

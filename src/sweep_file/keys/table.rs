@@ -1,7 +1,7 @@
 //! Every key of a sweep file, declared once: path, kind of value, default, meaning, and where the value lives.
 
 use super::field::{
-    BOUNDS, Field, PERIOD, UNTIL, always, formulas, of_axis, of_bins, of_methods, of_passage,
+    BOUNDS, Field, PERIOD, UNTIL, always, entries, of_axis, of_bins, of_methods, of_passage,
     optional,
 };
 use super::in_file::{AUTO, InFile, Named, SWITCH};
@@ -51,7 +51,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "A built-in model; `pbif systems` lists them, `pbif systems NAME` shows one."),
     key("system.title", Kind::Printable, Rule("`title`, if that is given"), optional!(equations.title),
         "Name of a system of your own, in words."),
-    key("system.equations.<axis>", Kind::Formula, Rule("a built-in model, by `system.model`"), formulas!(drift),
+    key("system.equations.<axis>", Kind::Formula, Rule("a built-in model, by `system.model`"), entries!(equations.drift),
         "Right side of the equation of an axis, without noise; one an axis, 1 to 4 of them, which also gives their order. docs/formulas.md has the language."),
     key("system.noise.kind", Kind::Choice(NoiseKind::words), Rule("`white`"), optional!(noise_kind),
         "`ornstein-uhlenbeck`: coloured noise in place of white, for built-in models too. Each noise keeps its intensity and gets a correlation \
@@ -59,19 +59,16 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
          whose spectrum has a peak near the frequency `noise_frequency`, as narrow as `noise_damping` is small; `noise` and `noise_rate` are axes."),
     key("system.noise.interpretation", Kind::Choice(Interpretation::words), Rule("to be given where it makes a difference"), optional!(equations.interpretation),
         "How noise is read whose amplitude depends on the axis that it drives."),
-    key("system.noise.<axis>", Kind::Formulas, Rule("no noise on the axis"), formulas!(noise),
+    key("system.noise.<axis>", Kind::Formulas, Rule("no noise on the axis"), entries!(equations.noise),
         "Amplitudes of independent white noises on the equation of an axis: the roots of their intensities."),
-    key("system.define.<name>", Kind::Formula, Rule("nothing"), formulas!(define),
+    key("system.define.<name>", Kind::Formula, Rule("nothing"), entries!(equations.define),
         "A formula that others may use by this name."),
     key("system.bounds.<axis>", Kind::Bounds, Rule("none"), BOUNDS,
         "Lower and upper value that an axis never leaves, as formulas of parameters; or `periodic` for an angle, which comes back after 2π (docs/angles.md); or `reflecting`, for both ends of its cells or as `[\"reflecting\", \"open\"]` for one: a wall there, at which noise and drift turn back (docs/formulas.md)."),
     key("system.bounds.<axis>.period", Kind::Number(POSITIVE), Rule("2π for an axis that is `periodic`"), PERIOD,
         "Period of an angle that is not measured in radians: `theta = { period = 1.0 }`."),
     key("system.parameters.<parameter>", Kind::Number(ANY), Rule("the model's default, where it has one"),
-        Field {
-            get: |draft, name| draft.parameters.iter().find(|(known, _)| known == name).map(|(_, value)| value.to_plain()),
-            set: |draft, name, plain| if let Some(value) = plain.number() { draft.set_parameter(name, value); },
-        },
+        entries!(parameters),
         "Value of a parameter of the model. The swept parameter is left out; with equations of your own it may stay."),
     key("sweep.parameter", Kind::Text, Required, optional!(parameter),
         "Name of the parameter that is swept."),
@@ -186,16 +183,10 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("detect.floor", Kind::Number(SHARE), OfOptions, always!(detect.floor),
         "Smallest persistence that counts, as a share of the density's maximum."),
     key("watch.<formula>", Kind::Formula, Rule("none"),
-        Field {
-            get: |draft, name| draft.averaged.iter().find(|(known, _)| known == name).map(|(_, text)| text.to_plain()),
-            set: |draft, name, plain| super::field::set_formulas(&mut draft.averaged, name, plain),
-        },
+        entries!(averaged),
         "A formula whose mean and standard deviation are columns of `points.csv`, for example `power = \"y^2\"`."),
     key("regions.<region>", Kind::Text, Rule("none"),
-        Field {
-            get: |draft, name| draft.regions.iter().find(|(known, _)| known == name).map(|(_, text)| text.to_plain()),
-            set: |draft, name, plain| super::field::set_formulas(&mut draft.regions, name, plain),
-        },
+        entries!(regions),
         "A region of the state by inequalities, for example `left = \"x < -0.2 and y > 0\"`, joined by `and`, `or`, `not`; names of other regions may stand in it. Or the basin of a peak of a watched density: `peak 2 of x`, the second from the left."),
     key("passage.<passage>.from", Kind::Text, Rule("`start`"), of_passage!(from),
         "Where a passage starts: in a region (by its name, or an inequality), spread as the steady state is there, or `density`, spread as it is everywhere."),
@@ -203,16 +194,11 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         Field {
             get: |draft, name| {
                 let (name, axis) = passage_and_axis(name);
-                let start = draft.passage(name)?.start.iter();
-                start.clone().find(|(known, _)| known == axis).map(|(_, value)| value.to_plain())
+                super::field::entry_of(&draft.passage(name)?.start, axis)
             },
             set: |draft, name, plain| {
                 let (name, axis) = passage_and_axis(name);
-                if let Some(value) = plain.number() {
-                    let start = &mut draft.passage_mut(name).start;
-                    start.retain(|(known, _)| known != axis);
-                    start.push((axis.to_owned(), value));
-                }
+                super::field::set_entry(&mut draft.passage_mut(name).start, axis, plain);
             },
         },
         "A state in which a passage starts: a coordinate for every axis."),
@@ -237,15 +223,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("passage.<passage>.quantiles", Kind::List(&Kind::Number(OPEN_UNIT)), Rule("none"), of_passage!(quantiles),
         "Shares of passages: the times by which so many have ended are wanted, 0.5 for the median."),
     key("levels.<measure>", Kind::Number(ANY), Rule("none"),
-        Field {
-            get: |draft, name| draft.levels.iter().find(|(known, _)| known == name).map(|(_, level)| level.to_plain()),
-            set: |draft, name, plain| {
-                if let Some(level) = plain.number() {
-                    draft.levels.retain(|(known, _)| known != name);
-                    draft.levels.push((name.to_owned(), level));
-                }
-            },
-        },
+        entries!(levels),
         "A level of a column of `points.csv` that has an error, such as `exit_mean = 1000`: the values of the parameter at which it is crossed are rows `LV` of the table."),
     key("exponent.kind", Kind::Choice(ExponentKind::words), Rule("no exponent"), optional!(exponent),
         "`fixed-point`: the largest Lyapunov exponent of a fixed point that multiplicative noise leaves alone, at every value, and the values at \
@@ -257,13 +235,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("exponent.steps", Kind::Number(POSITIVE), Rule("2e7"), optional!(exponent_steps),
         "Steps of all trajectories together at every value (`trajectories`). The error falls with the root of their number."),
     key("exponent.at.<axis>", Kind::Number(ANY), Rule("0"),
-        Field {
-            get: |draft, name| draft.fixed_point.iter().find(|(known, _)| known == name).map(|(_, value)| value.to_plain()),
-            set: |draft, name, plain| if let Some(value) = plain.number() {
-                draft.fixed_point.retain(|(known, _)| known != name);
-                draft.fixed_point.push((name.to_owned(), value));
-            },
-        },
+        entries!(fixed_point),
         "Coordinate of the fixed point (`fixed-point`): drift and all noises must be zero there, along the whole sweep."),
     key("relaxation.modes", Kind::Integer(1, 24), Rule("none"), optional!(slow_modes),
         "Slow modes, the deviations from the steady state that live longest: as many decay rates and frequencies are told in `points.csv`, with errors (docs/relaxation.md)."),

@@ -30,10 +30,7 @@ pub(super) fn warn_of_few_cells(
         "give `cells.{name}.count` some tens, or leave it out: it is then found"
     ));
     let place = reader.place(&["cells", name, "count"]);
-    reader.warn(match place {
-        Some(place) => found.at(place, "as many cells"),
-        None => found,
-    });
+    reader.warn(found.at(place, "as many cells"));
 }
 
 /// Says so where a grading is given to an axis that no method of this file cuts into cells.

@@ -87,8 +87,5 @@ fn fault(
 
 fn refuse(reader: &mut Reader<'_>, name: &str, found: Diagnostic) {
     let place = reader.place(&["system", "bounds", name]);
-    reader.report(match place {
-        Some(place) => found.at(place, "these ends"),
-        None => found,
-    });
+    reader.report(found.at(place, "these ends"));
 }

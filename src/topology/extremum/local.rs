@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::{LEAST, LOOKS, sign};
+use crate::numerics::narrowed;
 use crate::space::Axis;
 use crate::topology::FeatureKind;
 use crate::topology::reconstruction::{Weights, interpolating};
@@ -68,21 +69,10 @@ impl Local {
         let looks = (((to - from) / self.smallest).ceil() as usize).clamp(1, 8) * LOOKS;
         let look = |index: usize| from + (to - from) * index as f64 / looks as f64;
         let crossing = |index: usize| {
-            let (mut low, mut high) = (look(index), look(index + 1));
-            (slope(low) > 0.0 && slope(high) <= 0.0).then(|| {
-                // Bisection ends at neighbouring numbers.
-                loop {
-                    let middle = 0.5 * (low + high);
-                    if middle <= low || middle >= high {
-                        return high;
-                    }
-                    if slope(middle) > 0.0 {
-                        low = middle;
-                    } else {
-                        high = middle;
-                    }
-                }
-            })
+            let ends = (look(index), look(index + 1));
+            // Halving ends at neighbouring numbers long before.
+            (slope(ends.0) > 0.0 && slope(ends.1) <= 0.0)
+                .then(|| narrowed(ends, 2000, |at| slope(at) > 0.0).1)
         };
         (0..looks).filter_map(crossing).collect()
     }

@@ -97,7 +97,7 @@ fn downward<T: Number>(
 }
 
 /// Σ a b, in a fixed order.
-fn product<T: Number>(a: &[T], b: &[T::Wide]) -> T::Wide {
+pub(in super::super) fn product<T: Number>(a: &[T], b: &[T::Wide]) -> T::Wide {
     let mut sums = [T::Wide::default(); 8];
     let (left, right) = (a.chunks_exact(8), b.chunks_exact(8));
     let rest = left.remainder().iter().zip(right.remainder());

@@ -1,0 +1,89 @@
+//! Numerical routines that several rooms share.
+
+/// a·b, in a fixed order of eight sums, which run at once: the same everywhere.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 8];
+    let (left, right) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest = left.remainder().iter().zip(right.remainder());
+    let tail: f64 = rest.map(|(a, b)| a * b).sum();
+    for (a, b) in left.zip(right) {
+        for lane in 0..8 {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    sums.iter().sum::<f64>() + tail
+}
+
+/// Σ |a - b|.
+pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum()
+}
+
+/// A bracket narrowed by halving, so often or until its ends are neighbouring numbers: where `is_first` holds in its
+/// middle, that takes the place of its first end, else that of its second one.
+pub(crate) fn narrowed(
+    (mut first, mut second): (f64, f64),
+    halvings: usize,
+    mut is_first: impl FnMut(f64) -> bool,
+) -> (f64, f64) {
+    for _ in 0..halvings {
+        let middle = 0.5 * (first + second);
+        if middle == first || middle == second {
+            break;
+        }
+        if is_first(middle) {
+            first = middle;
+        } else {
+            second = middle;
+        }
+    }
+    (first, second)
+}
+
+/// The middle of a bracket that is [`narrowed`].
+pub(crate) fn bisected(
+    ends: (f64, f64),
+    halvings: usize,
+    is_first: impl FnMut(f64) -> bool,
+) -> f64 {
+    let (first, second) = narrowed(ends, halvings, is_first);
+    0.5 * (first + second)
+}
+
+/// Variance of a number from its values without one group of samples each (Tukey's jackknife).
+pub(crate) fn jackknife_variance(without: impl Iterator<Item = f64> + Clone) -> f64 {
+    let groups = without.clone().count() as f64;
+    let mean = without.clone().sum::<f64>() / groups;
+    let squares: f64 = without.map(|value| (value - mean).powi(2)).sum();
+    (groups - 1.0) / groups * squares
+}
+
+/// Standard error of a number: the root of its [`jackknife_variance`].
+pub(crate) fn jackknife(without: impl Iterator<Item = f64> + Clone) -> f64 {
+    jackknife_variance(without).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn halving_ends_at_neighbouring_numbers_on_both_sides() {
+        let (below, above) = narrowed((0.0, 4.0), 200, |x| x * x < 2.0);
+        assert_eq!(above, below.next_up());
+        assert!(below * below < 2.0 && above * above >= 2.0);
+        // A bracket may be given from above, and few halvings leave it wide.
+        assert_eq!(narrowed((4.0, 0.0), 2, |x| x > 2.5), (3.0, 2.0));
+        assert_eq!(bisected((4.0, 0.0), 2, |x| x > 2.5), 2.5);
+    }
+
+    #[test]
+    fn leaving_one_value_out_gives_the_standard_error_of_a_mean() {
+        let values = [1.0, 2.0, 4.0, 7.0];
+        let sum: f64 = values.iter().sum();
+        let without = values.iter().map(|value| (sum - value) / 3.0);
+        let mean = 0.25 * sum;
+        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+        assert!((jackknife(without) - (squares / 12.0).sqrt()).abs() < 1e-14);
+    }
+}
