@@ -59,7 +59,7 @@ impl<'a> Figures<'a> {
 
     /// The figures of a comparison of methods: marginals by every method (`marginals`), joint densities side by side
     /// (`joint_xy`), and the error against time (`time_to_accuracy`).
-    pub(crate) fn of_comparison(comparison: &'a Comparison, title: &'a str) -> Self {
+    pub fn of_comparison(comparison: &'a Comparison, title: &'a str) -> Self {
         let kinds = kinds::OF_COMPARISONS.iter();
         Self::new(title, kinds.flat_map(|kind| kind(comparison)).collect())
     }

@@ -48,6 +48,12 @@ impl LineRates {
         self.axes.iter().any(|axis| !axis.breaks.is_empty())
     }
 
+    /// Whether the slope of the density jumps at one of them.
+    pub(crate) fn has_jumps(&self) -> bool {
+        let mut breaks = self.axes.iter().flat_map(|axis| &axis.breaks);
+        breaks.any(|at| at.slope_jumps)
+    }
+
     /// The matrix and the escape.
     ///
     /// # Errors

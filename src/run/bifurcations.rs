@@ -102,8 +102,8 @@ pub(crate) fn bifurcations_markdown(family: &Family, labels: &[Label]) -> String
     text
 }
 
-/// Names the densities that a sweep counts differently from value to value, while finer cells show that nothing changes;
-/// `None` where there are none.
+/// Names the densities that a sweep counts differently from value to value, while finer cells show that nothing
+/// changes; `None` where there are none.
 pub(crate) fn miscounted_in_words(result: &SweepResult) -> Option<String> {
     let names: Vec<String> = (result.miscounted().iter())
         .map(|observable| observable.name(&result.subject.family))

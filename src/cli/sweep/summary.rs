@@ -4,7 +4,7 @@ use std::path::Path;
 
 use comfy_table::{Table, presets};
 
-use crate::continuation::{Finding, Label, Located, Point, PointStatus, RowWords, SweepResult};
+use crate::continuation::{Finding, Label, Point, PointStatus, RowWords, SweepResult};
 use crate::job::QUICK_POINTS;
 use crate::run::{doubt_in_words, format_number, format_with_error, miscounted_in_words};
 use crate::system::{Family, MeasureLevel};

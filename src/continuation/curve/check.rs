@@ -18,8 +18,8 @@ const SAME: f64 = 0.05;
 /// Checks on either side that the error of a point is taken from: where in its cell an indicator's place lies makes a
 /// single one small by chance.
 const NEIGHBOURS: usize = 2;
-/// How far an indicator's place moves from one check to the next at most, in ranges of its axis: what finer cells change
-/// is not the same everywhere.
+/// How far an indicator's place moves from one check to the next at most, in ranges of its axis: what finer cells
+/// change is not the same everywhere.
 const FARTHEST: f64 = 0.05;
 
 /// What a check shows: how far uphill the curve is by it.
@@ -102,8 +102,8 @@ impl Task<'_> {
         (points.collect(), work)
     }
 
-    /// The points that are checked: both ends, every so many from the start on, and those at which the indicator's place
-    /// has moved far since the last one. The slope at a kink follows from the equations: no grid takes part.
+    /// The points that are checked: both ends, every so many from the start on, and those at which the indicator's
+    /// place has moved far since the last one. The slope at a kink follows from the equations: no grid takes part.
     fn selection(&self, walked: &Walked) -> Vec<usize> {
         let every = self.options.check_every;
         if every == 0 || self.start.kind.traits().is_exact {

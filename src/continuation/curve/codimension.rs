@@ -137,8 +137,8 @@ fn add(
     }
 }
 
-/// Where two curves cross, in the box with sides of length one, with the error there. A curve that touches another one, as
-/// folds do where they begin at a split, is beside it by less than both errors on one side, and does not cross it.
+/// Where two curves cross, in the box with sides of length one, with the error there. A curve that touches another one,
+/// as folds do where they begin at a split, is beside it by less than both errors on one side, and does not cross it.
 fn crossings(first: &Curve, second: &Curve) -> Vec<([f64; 2], f64, Vec<Doubt>)> {
     let mut found: Vec<([f64; 2], f64, Vec<Doubt>)> = Vec::new();
     let [own, others] = [first, second].map(|curve| Piece::all_of(curve).collect::<Vec<Piece>>());

@@ -139,8 +139,8 @@ impl Piece {
     }
 }
 
-/// Whether a curve leaves another one to both sides by more than the errors of both, before it ends: seen from the piece
-/// with this place in its list. Where one touches the other, or ends beside it, errors alone make a crossing.
+/// Whether a curve leaves another one to both sides by more than the errors of both, before it ends: seen from the
+/// piece with this place in its list. Where one touches the other, or ends beside it, errors alone make a crossing.
 pub(super) fn passes_through(curve: &[Piece], at: usize, other: &[Piece]) -> bool {
     let is_left = |place: [f64; 2], error: f64| {
         let gaps = other.iter().filter_map(|piece| {

@@ -286,6 +286,10 @@ impl GeneratorSession {
     }
 }
 
+/// Beside planes at which a force jumps both schemes take the density from the same few cells, so that what they err
+/// alike is as large as what they differ by.
+const SHARED_AT_JUMPS: f64 = 2.0;
+
 /// What the second scheme changes, with the next term of the series by the factors of the first one. At planes at which
 /// a force bends or jumps the schemes are so far apart that the first term alone is half of it.
 fn again(
@@ -296,7 +300,13 @@ fn again(
 ) -> Result<Vec<f64>, MethodError> {
     let changed: Vec<f64> = unknowns.iter().zip(&change).map(|(u, du)| u + du).collect();
     let more = solver.response(&second.product(&changed), unknowns, None, ROUGH)?;
-    Ok(change.iter().zip(more).map(|(a, b)| a + b).collect())
+    let share = if second.has_jumps() {
+        SHARED_AT_JUMPS
+    } else {
+        1.0
+    };
+    let both = change.iter().zip(more);
+    Ok(both.map(|(a, b)| share * (a + b)).collect())
 }
 
 /// The numbers of a solve.
