@@ -80,7 +80,7 @@ pub(super) fn between_flanks(points: &[(&Point, &Flanks)], tolerance: f64) -> Op
         (0..observables).find_map(|observable| {
             let same = a.detections[observable].signature == b.detections[observable].signature;
             let is_exact = |point: &Point| point.densities[observable].structure.profile.is_some();
-            if !same && !(is_exact(a) && is_exact(b)) {
+            if !(same || is_exact(a) && is_exact(b)) {
                 return None;
             }
             let reach = reach(&a.densities[observable]);

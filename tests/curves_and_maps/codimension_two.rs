@@ -265,9 +265,9 @@ fn the_program_tells_and_draws_what_starts_from_a_degenerate_split() {
 #[test]
 #[ignore = "a minute"]
 fn a_fold_that_touches_a_split_does_not_cross_it_at_length() {
-    // The density of x splits at its centre on a line that the fold of x touches in one point, (0.0927, -0.3114), and lies
-    // beside everywhere else (trapezoid sums over y and bisection). Errors of both lines made a crossing of them at b =
-    // -0.329, "located" twelve errors away.
+    // The density of x splits at its centre on a line that the fold of x touches in one point, (0.0927, -0.3114), and
+    // lies beside everywhere else (trapezoid sums over y and bisection). Errors of both lines made a crossing of them
+    // at b = -0.329, "located" twelve errors away.
     let text = r#"
 system.equations = { x = "y", y = "-1.299 x - 0.317 x^3 - (-a + b H + 0.701 H^2) y" }
 system.noise = { y = "sqrt(0.246)" }
