@@ -150,6 +150,45 @@ impl Axis {
         self.series
     }
 
+    /// Of an axis of modes, what the masses at its nodes owe to the modes beyond the first `kept`: entry `node · count +
+    /// other` is what the mass at the other node adds. Without modes nothing is owed.
+    pub(crate) fn beyond_modes(&self, kept: usize) -> Vec<f64> {
+        let (middle, half) = match self.series {
+            Some(Series::Hermite { mean, deviation }) => (mean, deviation),
+            Some(Series::Fourier) => (self.from(), self.to() - self.from()),
+            Some(Series::Legendre) => (
+                0.5 * (self.from() + self.to()),
+                0.5 * (self.to() - self.from()),
+            ),
+            None => return vec![0.0; self.count() * self.count()],
+        };
+        let count = self.count();
+        let values = |x: &f64| {
+            let s = (x - middle) / half;
+            match self.series {
+                Some(Series::Fourier) => waves(count, s),
+                Some(Series::Hermite { .. }) => hermite_values(count, s),
+                _ => {
+                    let values = legendre_values(count, s).into_iter().enumerate();
+                    values
+                        .map(|(n, value)| ((2 * n + 1) as f64).sqrt() * value)
+                        .collect()
+                }
+            }
+        };
+        let nodes: Vec<Vec<f64>> = self.nodes.iter().map(values).collect();
+        let mut owed = Vec::with_capacity(count * count);
+        for own in &nodes {
+            // The weight of a node: values times roots of weights are an orthogonal matrix.
+            let weight = 1.0 / own.iter().map(|value| value * value).sum::<f64>();
+            for other in &nodes {
+                let products = own.iter().zip(other).skip(kept).map(|(a, b)| a * b);
+                owed.push(weight * products.sum::<f64>());
+            }
+        }
+        owed
+    }
+
     /// Of an axis of modes, the integrals of the series over bins with these edges: entry `bin · count + node` is what
     /// the mass at a node adds to a bin, by the first `used` modes.
     pub(crate) fn series_weights(&self, edges: &[f64], used: usize) -> Vec<f64> {
