@@ -11,6 +11,7 @@
 
 use std::sync::Arc;
 
+use super::source::Known;
 use super::still_noise::where_noise_dies;
 use super::{GeneratorCost, GeneratorMethodOptions, GeneratorSource};
 use crate::cancellation::Cancellation;
@@ -74,7 +75,7 @@ pub(super) fn add_largest_exponent(
     report: &mut SolveReport,
     source: &GeneratorSource,
     (system, value): (&Arc<dyn System>, f64),
-    (known, third): (Option<(&[f64], &[f64])>, Option<&[f64]>),
+    (known, third): (Option<Known<'_>>, Option<&[f64]>),
     cancellation: &Cancellation,
 ) -> Result<(), MethodError> {
     let (subject, space) = (source.problem.subject(), source.problem.space());

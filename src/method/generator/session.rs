@@ -15,6 +15,7 @@ use super::passages::{add_passages, at_nodes};
 use super::second::companion;
 use super::sensitivity::GeneratorSensitivity;
 use super::slow_modes::add_slow_modes;
+use super::source::Known;
 use super::spectra::add_spectra;
 use super::stand::Stand;
 use super::trail::Trail;
@@ -40,9 +41,6 @@ pub(super) const FINE: f64 = 1e-6;
 /// Distance in L1 of the unknowns that were expected to those that were found up to which a difference between schemes
 /// that was worked out for the first is that of the second, to [`ROUGH`].
 const NEAR: f64 = 1e-3;
-
-/// The unknowns of a steady state, and by how much those of another discretisation differ.
-type Known<'a> = (&'a [f64], &'a [f64]);
 
 /// Owns the factorisation and what the solved points say of the next one.
 pub(super) struct GeneratorSession {

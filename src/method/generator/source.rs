@@ -42,6 +42,9 @@ impl Varied {
     }
 }
 
+/// The unknowns of a steady state, and by how much those of another discretisation differ.
+pub(super) type Known<'a> = (&'a [f64], &'a [f64]);
+
 /// Densities along a path by the generator.
 #[derive(Debug, Clone)]
 pub struct GeneratorSource {
