@@ -143,8 +143,8 @@ impl GeneratorSession {
 
     /// Adds what is asked of first passages, slow modes and spectra at a value, unless densities are all that is asked
     /// for; `known` are the unknowns of the steady state, and by how much those of another discretisation differ, and
-    /// those of a third scheme, where there is one; `watched` are its densities. With a reach of one axis they are those
-    /// of a line.
+    /// those of a third scheme, where there is one; `watched` are its densities. With a reach of one axis they are
+    /// those of a line.
     fn add_asked(
         &self,
         report: &mut SolveReport,

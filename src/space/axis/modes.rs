@@ -150,8 +150,8 @@ impl Axis {
         self.series
     }
 
-    /// Of an axis of modes, what the masses at its nodes owe to the modes beyond the first `kept`: entry `node · count +
-    /// other` is what the mass at the other node adds. Without modes nothing is owed.
+    /// Of an axis of modes, what the masses at its nodes owe to the modes beyond the first `kept`: entry `node · count
+    /// + other` is what the mass at the other node adds. Without modes nothing is owed.
     pub(crate) fn beyond_modes(&self, kept: usize) -> Vec<f64> {
         let (middle, half) = match self.series {
             Some(Series::Hermite { mean, deviation }) => (mean, deviation),
