@@ -139,8 +139,9 @@ pub struct EstimatedDensity {
     /// Share of the maximum below which values are what the solver leaves; zero where every cell has its digits,
     /// whatever its mass.
     pub negligible: f64,
-    /// What the ends of the ranges may have changed. It changes from cell to cell as the density itself does, and makes
-    /// no feature: so it is no part of the standard errors, by which neighbours are told apart, but of what is stated.
+    /// What the ends of the ranges, and modes that are not there, may have changed. It changes from cell to cell as the
+    /// density itself does, and makes no feature: so it is no part of the standard errors, by which neighbours are told
+    /// apart, but of what is stated.
     pub truncation: Truncation,
 }
 
@@ -155,7 +156,7 @@ pub(crate) const NEGLIGIBLE_OF_QUANTITIES: f64 = 1e-5;
 /// move by, if it did is allowed for.
 pub(crate) const LEAK_ALLOWANCE: f64 = 2.0;
 
-/// What the ends of the ranges may have changed of a density.
+/// What the ends of the ranges, and modes that are not there, may have changed of a density.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Truncation {
@@ -163,6 +164,20 @@ pub struct Truncation {
     pub share: f64,
     /// By how much each value may be off besides, with its sign; nothing where no more than the share is.
     pub change: Vec<f64>,
+}
+
+impl Truncation {
+    /// Adds what else each value may be off by, with the sign that cancels nothing of what is there.
+    pub(crate) fn add(&mut self, change: &[f64]) {
+        if self.change.is_empty() {
+            self.change = change.to_vec();
+            return;
+        }
+        let together: f64 = self.change.iter().zip(change).map(|(a, b)| a * b).sum();
+        let sign = if together < 0.0 { -1.0 } else { 1.0 };
+        let pairs = self.change.iter_mut().zip(change);
+        pairs.for_each(|(own, more)| *own += sign * more);
+    }
 }
 
 impl EstimatedDensity {

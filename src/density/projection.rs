@@ -292,6 +292,39 @@ impl QuantityMoments {
             standard_deviation: if variance < 0.0 { 0.0 } else { variance.sqrt() },
         })
     }
+
+    /// What a coarser map changes of the moments, were its changes in all layers of cells of one sign: the largest over
+    /// the axes. In the tails, where cells are wide against the scale on which the density falls, polynomials through
+    /// the masses err from cell to cell, and their sums by both maps may agree.
+    ///
+    /// # Errors
+    /// [`DensityError::Length`].
+    pub(crate) fn change_of_layers(
+        &self,
+        coarser: &Self,
+        mass: &[f64],
+        own: &Moments,
+    ) -> Result<Moments, DensityError> {
+        let [fine, coarse] = [self, coarser].map(|map| {
+            let sums = map.sums.of(mass)?;
+            Ok::<_, DensityError>(map.averages.layers(&sums))
+        });
+        let spread = own.standard_deviation.max(f64::MIN_POSITIVE);
+        let mut most = Moments {
+            mean: 0.0,
+            standard_deviation: 0.0,
+        };
+        for (fine, coarse) in fine?.iter().zip(&coarse?) {
+            let (mut mean, mut square) = (0.0, 0.0);
+            for (a, b) in fine.iter().zip(coarse) {
+                mean += (b[0] - a[0]).abs();
+                square += (b[1] - a[1] - 2.0 * own.mean * (b[0] - a[0])).abs();
+            }
+            most.mean = most.mean.max(mean);
+            most.standard_deviation = most.standard_deviation.max(0.5 * square / spread);
+        }
+        Ok(most)
+    }
 }
 
 /// One value a cell, or an error.

@@ -37,6 +37,9 @@ const MOST_SUB_CELLS: f64 = 160_000.0;
 /// Parts of a cell along an axis at most: of one axis, and of several.
 const MOST_PARTS: [f64; 2] = [64.0, 12.0];
 
+/// Cells that a polynomial in the last cell before an end goes through, for a mean.
+const LAST_WINDOW: usize = 3;
+
 impl Detail {
     /// Parts of each cell along every axis.
     fn parts(self, cells: usize, axes: usize) -> usize {
@@ -45,6 +48,16 @@ impl Detail {
         match self {
             Self::Fine => fine,
             Self::Coarse | Self::Sampled => (fine / 2).max(1),
+        }
+    }
+
+    /// Cells that a polynomial goes through for a mean: in the last cell before an end few. There most of them lie on
+    /// one side, where the density may be larger by many powers of e, and what a polynomial through these makes of the
+    /// last cell is weighed most by formulas that grow.
+    fn windows_for_means(self) -> [usize; 2] {
+        match self {
+            Self::Fine => [self.window(), LAST_WINDOW],
+            Self::Coarse | Self::Sampled => [self.window(); 2],
         }
     }
 
@@ -74,7 +87,7 @@ impl Cut {
     fn new(
         space: &CellSpace,
         coordinates: &[Coordinate],
-        detail: Detail,
+        (detail, windows): (Detail, [usize; 2]),
         planes: &[(usize, f64)],
     ) -> Self {
         let needs = |axis: usize| {
@@ -95,12 +108,7 @@ impl Cut {
             .collect();
         let parts = detail.parts(cells, axes.len());
         Self {
-            sub_cells: SubCells::new(
-                &cut,
-                parts,
-                (detail.window(), detail == Detail::Coarse),
-                &planes,
-            ),
+            sub_cells: SubCells::new(&cut, parts, (windows, detail == Detail::Coarse), &planes),
             dimension: space.dimension(),
             axes,
         }
@@ -194,7 +202,8 @@ impl Spread {
         detail: Detail,
         planes: &[(usize, f64)],
     ) -> Self {
-        let cut = Cut::new(space, coordinates, detail, planes);
+        let windows = [detail.window(); 2];
+        let cut = Cut::new(space, coordinates, (detail, windows), planes);
         let count = cut.sub_cells.count();
         let seen = |coordinate: &Coordinate| {
             let mut found: Vec<Vec<Share>> = Vec::with_capacity(count);
@@ -280,6 +289,8 @@ pub(super) struct Averages {
     weights: [Vec<f64>; 2],
     /// The centre of a sub-cell whose weights are not all finite.
     undefined: Option<Vec<f64>>,
+    /// Which of the axes that take part have cells, by their places.
+    with_cells: Vec<usize>,
 }
 
 impl Averages {
@@ -294,7 +305,8 @@ impl Averages {
             .into_iter()
             .map(|bins| Coordinate::Quantity(Box::new(quantity.clone()), bins))
             .collect();
-        let cut = Cut::new(space, &coordinates, detail, planes);
+        let windows = detail.windows_for_means();
+        let cut = Cut::new(space, &coordinates, (detail, windows), planes);
         let mut weights = [Vec::new(), Vec::new()];
         let mut undefined = None;
         cut.look(quantity, |number, seen| {
@@ -312,7 +324,10 @@ impl Averages {
                 weights[1].push(2.0 * mean * change / 12.0);
             }
         });
+        let places = cut.axes.iter().enumerate();
+        let with_cells = places.filter(|&(_, &axis)| !space.axes()[axis].is_modes());
         Self {
+            with_cells: with_cells.map(|(place, _)| place).collect(),
             cut,
             weights,
             undefined,
@@ -329,18 +344,46 @@ impl Averages {
 
     /// Mean and mean square, from the masses of the cells of the axes that take part.
     pub(super) fn of(&self, masses: &[f64]) -> [f64; 2] {
+        let mut sums = [0.0; 2];
+        self.each(masses, |_, parts| {
+            sums.iter_mut()
+                .zip(parts)
+                .for_each(|(sum, part)| *sum += part);
+        });
+        sums
+    }
+
+    /// What each layer of cells across each of these axes adds to mean and mean square. Series along axes of modes have
+    /// no layers: their waves cancel.
+    pub(super) fn layers(&self, masses: &[f64]) -> Vec<Vec<[f64; 2]>> {
+        let sub_cells = &self.cut.sub_cells;
+        let mut layers: Vec<Vec<[f64; 2]>> = vec![Vec::new(); self.with_cells.len()];
+        self.each(masses, |number, parts| {
+            for (&axis, layers) in self.with_cells.iter().zip(&mut layers) {
+                let cell = sub_cells.cell(number, axis);
+                if layers.len() <= cell {
+                    layers.resize(cell + 1, [0.0; 2]);
+                }
+                let sums = layers[cell].iter_mut().zip(parts);
+                sums.for_each(|(sum, part)| *sum += part);
+            }
+        });
+        layers
+    }
+
+    /// Looks at what each sub-cell adds to mean and mean square.
+    fn each(&self, masses: &[f64], mut look: impl FnMut(usize, [f64; 2])) {
         let found = self.cut.sub_cells.apply(masses);
         let stride = found.len();
-        [0, 1].map(|which| {
-            let weights = self.weights[which].chunks(stride).enumerate();
-            weights
-                .map(|(number, weights)| {
-                    let terms = weights.iter().zip(&found);
-                    terms
-                        .map(|(weight, values)| weight * values[number])
-                        .sum::<f64>()
-                })
-                .sum()
-        })
+        for number in 0..self.cut.sub_cells.count() {
+            let parts = [0, 1].map(|which| {
+                let weights = &self.weights[which][number * stride..(number + 1) * stride];
+                let terms = weights.iter().zip(&found);
+                terms
+                    .map(|(weight, values)| weight * values[number])
+                    .sum::<f64>()
+            });
+            look(number, parts);
+        }
     }
 }

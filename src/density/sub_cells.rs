@@ -35,12 +35,13 @@ struct Lines {
 }
 
 impl SubCells {
-    /// Cuts every cell into `parts` along each axis; polynomials go through `window` cells, and series have all of
-    /// their modes, of a coarse map some less. `planes` are axes with coordinates at which the derivative jumps.
+    /// Cuts every cell into `parts` along each axis; polynomials go through `window` cells, in the last cell before an
+    /// end through the second number of them, and series have all of their modes, of a coarse map some less. `planes`
+    /// are axes with coordinates at which the derivative jumps.
     pub(super) fn new(
         axes: &[&Axis],
         parts: usize,
-        (window, is_coarse): (usize, bool),
+        (windows, is_coarse): ([usize; 2], bool),
         planes: &[(usize, f64)],
     ) -> Self {
         let lines = axes.iter().enumerate().map(|(index, axis)| {
@@ -49,7 +50,7 @@ impl SubCells {
             }
             let own = planes.iter().filter(|(plane, _)| *plane == index);
             let faces: Vec<usize> = own.filter_map(|(_, at)| axis.face_at(*at)).collect();
-            Lines::new(axis, parts, window, &faces)
+            Lines::new(axis, parts, windows, &faces)
         });
         Self {
             axes: lines.collect(),
@@ -95,7 +96,7 @@ impl SubCells {
 }
 
 impl Lines {
-    fn new(axis: &Axis, parts: usize, window: usize, faces: &[usize]) -> Self {
+    fn new(axis: &Axis, parts: usize, windows: [usize; 2], faces: &[usize]) -> Self {
         let mut lines = Self {
             cells: axis.count(),
             whole: axis.count(),
@@ -105,6 +106,8 @@ impl Lines {
             slope: Vec::new(),
         };
         for cell in 0..axis.count() {
+            let is_last = !axis.is_closed() && (cell == 0 || cell + 1 == axis.count());
+            let window = windows[usize::from(is_last)];
             let cells = cells_around(cell, window, axis.count(), faces);
             let nodes = &axis.edges()[cells.start..=cells.end];
             let (from, width) = (axis.edges()[cell], axis.width(cell));
@@ -248,7 +251,7 @@ mod tests {
             .iter()
             .flat_map(|a| along_y.iter().map(move |b| a * b))
             .collect();
-        let cut = SubCells::new(&[&x, &y], 3, (5, false), &[]);
+        let cut = SubCells::new(&[&x, &y], 3, ([5; 2], false), &[]);
         let found = cut.apply(&masses);
         assert_eq!(cut.count(), 36 * 24);
         let mut edges = [(0.0, 0.0); 2];
@@ -276,7 +279,7 @@ mod tests {
             .windows(2)
             .map(|e| below(e[1]) - below(e[0]))
             .collect();
-        let cut = SubCells::new(&[&axis], 4, (5, false), &[(0, 0.0)]);
+        let cut = SubCells::new(&[&axis], 4, ([5; 2], false), &[(0, 0.0)]);
         let found = cut.apply(&masses);
         let mut edges = [(0.0, 0.0)];
         for (number, mass) in found[0].iter().enumerate() {

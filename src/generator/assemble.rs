@@ -55,16 +55,16 @@ pub(crate) fn assemble_damped(
     lines.generator()
 }
 
-/// The generators by two schemes, as they are along the lines of the grid: the drift is sampled once for both, and
+/// The generators by some schemes, as they are along the lines of the grid: the drift is sampled once for all, and
 /// columns are laid out of those that need them.
 ///
 /// # Errors
 /// As [`assemble`].
-pub(crate) fn assemble_lines(
+pub(crate) fn assemble_lines<const N: usize>(
     system: &dyn System,
     space: &CellSpace,
-    schemes: [AdvectiveScheme; 2],
-) -> Result<[LineRates; 2], GeneratorError> {
+    schemes: [AdvectiveScheme; N],
+) -> Result<[LineRates; N], GeneratorError> {
     check(system, space)?;
     let of_scheme = |scheme| {
         let geometry = |axis| AxisGeometry::new(system, axis, space, scheme);

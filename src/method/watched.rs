@@ -193,29 +193,46 @@ impl Maps {
         changes.collect()
     }
 
-    /// Moments of the quantities that are averaged, from masses without noise. Their errors are what a second
-    /// discretisation of the masses and coarser sub-cells change; unknown without the former.
+    /// Moments of the quantities that are averaged, from masses without noise. Their errors are what other
+    /// discretisations of the masses and coarser sub-cells change; unknown without the former.
     pub(super) fn exact_moments(
         &self,
         space: &CellSpace,
         masses: &[f64],
-        second: Option<&[f64]>,
+        others: &[&[f64]],
         kinked: &[SwitchingSurface],
     ) -> Result<Vec<EstimatedMoments>, MethodError> {
         let averaged = self.averaged.iter().map(|map| {
             let moments = map.moments.of(masses)?;
-            let (Some(second), Some((coarse, values))) = (second, &map.judge) else {
+            let (false, Some((coarse, values))) = (others.is_empty(), &map.judge) else {
                 return Ok(EstimatedMoments::unjudged(moments));
             };
-            let others = [map.moments.of(second)?, coarse.of(masses)?];
-            let roughness = Roughness {
-                space,
-                weights: masses,
-                differences: &differences(masses, second),
-                planes: &planes(kinked),
+            let by_others = others.iter().map(|other| map.moments.of(other));
+            let by_coarser = std::iter::once(coarse.of(masses));
+            let all: Result<Vec<Moments>, _> = by_others.chain(by_coarser).collect();
+            let rough = others.iter().map(|other| {
+                let roughness = Roughness {
+                    space,
+                    weights: masses,
+                    differences: &differences(masses, other),
+                    planes: &planes(kinked),
+                };
+                roughness.of_moments(values, &moments)
+            });
+            let none = Moments {
+                mean: 0.0,
+                standard_deviation: 0.0,
             };
-            let more = roughness.of_moments(values, &moments);
-            Ok(EstimatedMoments::by_difference(moments, &others).with(more))
+            // Kinks are those of the masses, whatever they are compared with.
+            let more = rough.fold(none, |most, one| Moments {
+                mean: most.mean.max(one.mean),
+                standard_deviation: most.standard_deviation.max(one.standard_deviation),
+            });
+            let others = all?;
+            let layers = map.moments.change_of_layers(coarse, masses, &moments)?;
+            Ok(EstimatedMoments::by_difference(moments, &others)
+                .with(more)
+                .with(layers))
         });
         averaged.collect()
     }

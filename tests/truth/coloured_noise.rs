@@ -11,6 +11,7 @@ use pbif::density::{Density, Observable, Projection, total_variation};
 use pbif::generator::{AdvectiveScheme, GeneratorOptions, assemble, cell_masses};
 use pbif::space::{Axis, CellSpace};
 use pbif::system::{Model, NoiseKind, System, TypedModel, registry};
+use pbif::topology::{DetectOptions, Detector, Feature, FeatureKind, PersistenceDetector};
 use statrs::function::erf::erfc;
 
 const OU: NoiseKind = NoiseKind::OrnsteinUhlenbeck;
@@ -484,4 +485,64 @@ fn formulas_with_a_state_that_modes_carry_have_their_densities_and_means() {
         .map(|(a, b)| (a - b).abs())
         .sum::<f64>();
     assert!(apart < 1e-3, "{apart:e}");
+}
+
+/// z = x + a x² + b x³ is normal under filtered noise, so that p(x) ∝ exp(-(z - m)²/2v) z' is known.
+fn bent(noise: &str, modes: &str) -> (String, impl Fn(f64) -> f64) {
+    let (a, b, c) = (-0.134, 0.203, 1.39);
+    let z = format!("(x + ({a})*x^2 + {b}*x^3)");
+    let slope = format!("(1 + 2*({a})*x + 3*{b}*x^2)");
+    let text = format!(
+        "[system.equations]\nx = \"(0.109 - {c}*{z})/{slope}\"\n\
+         [system.noise]\nkind = \"ornstein-uhlenbeck\"\nx = \"{noise}/{slope}\"\n\
+         [sweep]\nparameter = \"tau\"\nfrom = 0.06\nto = 0.8\npoints = 9\n\
+         [cells]\nx = {{ from = -3.2, to = 3.2, count = 120 }}\n{modes}\
+         [detect]\nmarginals = [\"x\"]\n"
+    );
+    let strength: f64 = noise.parse().unwrap();
+    let peak = move |tau: f64| {
+        let v = strength * strength / (2.0 * c * (1.0 + c * tau));
+        let slope_of_log = |x: f64| {
+            let (z, first, second) = (
+                x + a * x * x + b * x * x * x,
+                1.0 + 2.0 * a * x + 3.0 * b * x * x,
+                2.0 * a + 6.0 * b * x,
+            );
+            -(z - 0.109 / c) * first / v + second / first
+        };
+        let (mut low, mut high) = (-0.6, 0.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if slope_of_log(middle) > 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        0.5 * (low + high)
+    };
+    (text, peak)
+}
+
+#[test]
+fn the_place_of_a_peak_is_known_as_well_as_the_modes_of_the_noise_tell() {
+    for (modes, most) in [("", 1e-3), ("noise = { modes = 12 }\n", 3e-2)] {
+        let (text, peak) = bent("2.095", modes);
+        let (_, found) = solved(&text, "", Some(0.7075));
+        let detector = PersistenceDetector::new(DetectOptions::default(), 1);
+        let detected = detector.detect(&found.densities[0]);
+        let exact = peak(0.7075);
+        let near = detected
+            .features
+            .iter()
+            .filter(|one| one.kind == FeatureKind::Peak);
+        let near = near.min_by(|one, other| {
+            let off = |one: &Feature| (one.position[0] - exact).abs();
+            off(one).total_cmp(&off(other))
+        });
+        let near = near.unwrap();
+        let (off, error) = ((near.position[0] - exact).abs(), near.errors.position[0]);
+        assert!(off <= error, "{modes}: {off:e}, stated {error:e}");
+        assert!(error < most, "{modes}: {error:e}");
+    }
 }

@@ -17,6 +17,7 @@ mod internal_states;
 mod located;
 mod location;
 mod long_passages;
+mod means_of_formulas;
 mod moving_jump;
 mod natural_ends;
 mod one_axis;

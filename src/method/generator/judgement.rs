@@ -12,18 +12,19 @@ use super::rotation::{Steady, rotation};
 use super::second::{Second, SecondSolve};
 use super::session::{FINE, GeneratorSession, PointSolve, ROUGH};
 use super::source::{METHOD, SHARP};
+use super::third::again;
 use super::trail::{self, Trail};
 use super::unknowns::{by_schemes, negative_mass, summed_over_modes, with_walls};
 use crate::continuation::measure::{ESCAPE_RATE, FACTORISATIONS, NEGATIVE_MASS};
 use crate::continuation::{Finding, Measure, Solution};
 use crate::density::EstimatedDensity;
-use crate::generator::{LineRates, cell_masses, resolution, summed_to_walls};
+use crate::generator::{cell_masses, resolution, summed_to_walls};
 use crate::method::forcing::Forced;
 use crate::method::measures::{Cells, Others};
 use crate::method::report::{QUIET_ESCAPE, Reporter};
 use crate::method::watched::planes;
 use crate::method::{MethodError, Problem, natural_ends};
-use crate::stationary::generator::{RateError, RateInfo, RateSolver};
+use crate::stationary::generator::{RateError, RateInfo};
 
 /// Escape per unit time below which mass is said to stay in Ω, and relaxation is not looked at.
 const NO_ESCAPE: f64 = 1e-12;
@@ -90,6 +91,7 @@ impl GeneratorSession {
         let (mut densities, second) = self.densities(solved, &masses)?;
         if solved.second.is_some() {
             self.truncate(solved, &masses, reporter.missing(), &mut densities)?;
+            self.add_last_modes(solved, &masses, &mut densities)?;
         }
         // What is negative along a series is told of its modes.
         let carried = |axis: &usize| space.axes().get(*axis).is_some_and(|axis| axis.is_modes());
@@ -114,7 +116,13 @@ impl GeneratorSession {
             }
             Cow::Borrowed(_) => of_axes,
         };
-        let of_quantities = maps.exact_moments(space, &masses, second.masses(), kinked)?;
+        let third = solved.third.as_ref().map(|change| {
+            let there: Vec<f64> = unknowns.iter().zip(change).map(|(u, du)| u + du).collect();
+            cell_masses(solved.system.as_ref(), space, &there)
+        });
+        let by_others = [second.masses(), third.as_deref()];
+        let by_others: Vec<&[f64]> = by_others.into_iter().flatten().collect();
+        let of_quantities = maps.exact_moments(space, &masses, &by_others, kinked)?;
         let at_phases = moments_at_phases(
             problem.family(),
             &OverPeriod {
@@ -284,29 +292,6 @@ impl GeneratorSession {
         });
         Ok((densities, Second { change, solved }))
     }
-}
-
-/// Beside planes at which a force jumps both schemes take the density from the same few cells, so that what they err
-/// alike is as large as what they differ by.
-const SHARED_AT_JUMPS: f64 = 2.0;
-
-/// What the second scheme changes, with the next term of the series by the factors of the first one. At planes at which
-/// a force bends or jumps the schemes are so far apart that the first term alone is half of it.
-fn again(
-    solver: &mut RateSolver,
-    second: &LineRates,
-    unknowns: &[f64],
-    change: Vec<f64>,
-) -> Result<Vec<f64>, MethodError> {
-    let changed: Vec<f64> = unknowns.iter().zip(&change).map(|(u, du)| u + du).collect();
-    let more = solver.response(&second.product(&changed), unknowns, None, ROUGH)?;
-    let share = if second.has_jumps() {
-        SHARED_AT_JUMPS
-    } else {
-        1.0
-    };
-    let both = change.iter().zip(more);
-    Ok(both.map(|(a, b)| share * (a + b)).collect())
 }
 
 /// The numbers of a solve.

@@ -11,17 +11,20 @@
 
 use std::sync::Arc;
 
+use super::source::Known;
 use super::still_noise::where_noise_dies;
 use super::{GeneratorCost, GeneratorMethodOptions, GeneratorSource};
 use crate::cancellation::Cancellation;
 use crate::continuation::measure::{DIVERGENCE, EXPONENT};
 use crate::continuation::{Finding, Measure, MeasureKind, SolveReport};
+use crate::density::Roughness;
 use crate::exponent::{Exponent, largest};
 use crate::generator::{
     Dissipation, Generator, GeneratorOptions, add_shared_noise, add_spectral_viscosity, assemble,
     assemble_damped, at_nodes, unknown_moments,
 };
 use crate::method::MethodError;
+use crate::method::watched::planes;
 use crate::space::{Axis, CellSpace};
 use crate::stationary::generator::{RateOptions, RateSolver};
 use crate::system::{ExponentMethod, HALF_TURN, Lanes, System, Tangent};
@@ -64,7 +67,7 @@ const TOLERANCE: f64 = 1e-9;
 const ROUGH: f64 = 1e-2;
 
 /// Adds exponent and divergence to a report; `known` are the unknowns of the steady state, and by how much those of
-/// another discretisation differ.
+/// another discretisation differ, and those of a third scheme, where there is one.
 ///
 /// # Errors
 /// [`MethodError::Cancelled`].
@@ -72,7 +75,7 @@ pub(super) fn add_largest_exponent(
     report: &mut SolveReport,
     source: &GeneratorSource,
     (system, value): (&Arc<dyn System>, f64),
-    known: Option<(&[f64], &[f64])>,
+    (known, third): (Option<Known<'_>>, Option<&[f64]>),
     cancellation: &Cancellation,
 ) -> Result<(), MethodError> {
     let (subject, space) = (source.problem.subject(), source.problem.space());
@@ -93,12 +96,16 @@ pub(super) fn add_largest_exponent(
     };
     let axes = space.dimension();
     let still = where_noise_dies(system.as_ref(), space);
+    let planes = planes(&source.kinked);
+    let density = KnownMasses {
+        space,
+        unknowns,
+        changes: [Some(changes), third].into_iter().flatten().collect(),
+        unresolved: &still,
+        planes: &planes,
+    };
     let by_axis: Vec<Exponent> = (0..axes)
-        .map(|axis| {
-            mean(space, (unknowns, changes), &still, &|states| {
-                tangent.diagonal(states)[axis]
-            })
-        })
+        .map(|axis| density.mean(&|states| tangent.diagonal(states)[axis]))
         .collect();
     let divergence = by_axis
         .iter()
@@ -143,26 +150,47 @@ fn exponent(
     angles.exponent(source.problem.space())
 }
 
-/// Mean of a function over a density, and what another discretisation changes, twice; besides what some cells add, in
-/// which neither the density nor the function is resolved.
-fn mean(
-    space: &CellSpace,
-    (unknowns, changes): (&[f64], &[f64]),
-    unresolved: &[usize],
-    function: &dyn Fn(&[Lanes]) -> Lanes,
-) -> Exponent {
-    let values = at_nodes(space, function);
-    let sum = |weights: &[f64]| -> f64 { weights.iter().zip(&values).map(|(w, q)| w * q).sum() };
-    let total: f64 = unknowns.iter().sum();
-    let value = sum(unknowns) / total;
-    let part = |&cell: &usize| (unknowns[cell] * (values[cell] - value)).abs();
-    let unresolved: f64 = unresolved.iter().map(part).sum();
-    let change = (sum(changes) - value * changes.iter().sum::<f64>()) / total;
-    Exponent {
-        value,
-        error: 2.0 * change.abs()
-            + unresolved / total
-            + 1e-12 * values.iter().fold(0.0, |most: f64, q| most.max(q.abs())),
+/// A steady state, and what is known of its errors.
+struct KnownMasses<'a> {
+    space: &'a CellSpace,
+    unknowns: &'a [f64],
+    /// By how much the unknowns of other discretisations differ.
+    changes: Vec<&'a [f64]>,
+    /// Cells in which neither the density nor a function is resolved.
+    unresolved: &'a [usize],
+    /// Axes with coordinates of planes on which the derivative of the density jumps.
+    planes: &'a [(usize, f64)],
+}
+
+impl KnownMasses<'_> {
+    /// Mean of a function. Its error adds up, as that of other means, what other discretisations change, and what their
+    /// differences would do were they independent from layer to layer of the cells, twice: sums over nodes have no
+    /// other discretisation; besides what cells add that resolve nothing.
+    fn mean(&self, function: &dyn Fn(&[Lanes]) -> Lanes) -> Exponent {
+        let values = at_nodes(self.space, function);
+        let sum =
+            |weights: &[f64]| -> f64 { weights.iter().zip(&values).map(|(w, q)| w * q).sum() };
+        let total: f64 = self.unknowns.iter().sum();
+        let value = sum(self.unknowns) / total;
+        let aside: Vec<f64> = values.iter().map(|one| one - value).collect();
+        let part = |&cell: &usize| (self.unknowns[cell] * aside[cell]).abs();
+        let unresolved: f64 = self.unresolved.iter().map(part).sum();
+        let by_differences = self.changes.iter().map(|&differences| {
+            let pairs = differences.iter().zip(&aside);
+            let change: f64 = pairs.map(|(w, q)| w * q).sum();
+            let roughness = Roughness {
+                space: self.space,
+                weights: self.unknowns,
+                differences,
+                planes: self.planes,
+            };
+            change.abs() + roughness.of(&aside)
+        });
+        let largest = values.iter().fold(0.0, |most: f64, q| most.max(q.abs()));
+        Exponent {
+            value,
+            error: 2.0 * by_differences.sum::<f64>() / total + unresolved / total + 1e-12 * largest,
+        }
     }
 }
 

@@ -14,6 +14,7 @@ mod largest_exponent;
 #[cfg(test)]
 #[allow(clippy::print_stdout)]
 mod largest_exponent_tests;
+mod last_modes;
 mod line_moments;
 #[cfg(feature = "serde")]
 mod memory;
@@ -32,6 +33,7 @@ mod source;
 mod spectra;
 mod stand;
 mod still_noise;
+mod third;
 mod trail;
 mod truncation;
 #[cfg(test)]

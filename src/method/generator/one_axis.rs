@@ -178,7 +178,7 @@ pub(super) fn solution<'session>(
         }),
     }];
     let second: Vec<f64> = masses.iter().zip(&difference).map(|(m, d)| m + d).collect();
-    moments.extend(maps.exact_moments(problem.space(), masses, Some(&second), &source.kinked)?);
+    moments.extend(maps.exact_moments(problem.space(), masses, &[&second], &source.kinked)?);
     let averaged = maps.averaged.iter().map(|map| &map.quantity);
     if let Some(reach) = reach(source, system, found) {
         put_on_line(&mut reporter, &reach, averaged, &mut moments)?;

@@ -15,6 +15,7 @@ use super::passages::{add_passages, at_nodes};
 use super::second::companion;
 use super::sensitivity::GeneratorSensitivity;
 use super::slow_modes::add_slow_modes;
+use super::source::Known;
 use super::spectra::add_spectra;
 use super::stand::Stand;
 use super::trail::Trail;
@@ -40,9 +41,6 @@ pub(super) const FINE: f64 = 1e-6;
 /// Distance in L1 of the unknowns that were expected to those that were found up to which a difference between schemes
 /// that was worked out for the first is that of the second, to [`ROUGH`].
 const NEAR: f64 = 1e-3;
-
-/// The unknowns of a steady state, and by how much those of another discretisation differ.
-type Known<'a> = (&'a [f64], &'a [f64]);
 
 /// Owns the factorisation and what the solved points say of the next one.
 pub(super) struct GeneratorSession {
@@ -71,6 +69,8 @@ pub(super) struct PointSolve {
     /// By how much the second scheme's unknowns differ, where that came along with the solve, and whether the unknowns
     /// were expected well enough for that to be it.
     pub(super) along: Option<(Vec<f64>, bool)>,
+    /// By how much the unknowns of a third scheme differ, where means of formulas want it.
+    pub(super) third: Option<Vec<f64>>,
 }
 
 impl GeneratorSession {
@@ -103,7 +103,7 @@ impl GeneratorSession {
                 report, densities, ..
             } = &mut solution;
             let reach = one_axis::reach(&self.source, system.as_ref(), &found);
-            self.add_asked(report, value, (&system, reach), (known, densities))?;
+            self.add_asked(report, value, (&system, reach), (known, None, densities))?;
             return Ok(solution);
         }
         let nearest = self.trails.nearest(value).cloned();
@@ -116,13 +116,16 @@ impl GeneratorSession {
         }
         let mut solved = self.solved(value, system, guess.as_deref(), expected.as_deref())?;
         solved.steady.info.factorisations = self.solver.factorisations() - factorisations;
+        solved.third = self.by_third_scheme(&solved)?;
         let (mut solution, trail) = self.judge(&solved, before.as_ref())?;
         let newest = trail.as_ref().and_then(Trail::newest);
         let known = newest.map(|newest| (newest.mass.as_slice(), newest.difference.as_slice()));
         let Solution {
             report, densities, ..
         } = &mut solution;
-        self.add_asked(report, value, (&solved.system, None), (known, densities))?;
+        let third = solved.third.as_deref();
+        let known = (known, third, densities.as_slice());
+        self.add_asked(report, value, (&solved.system, None), known)?;
         let Some(trail) = trail else {
             return Ok(solution);
         };
@@ -139,14 +142,15 @@ impl GeneratorSession {
     }
 
     /// Adds what is asked of first passages, slow modes and spectra at a value, unless densities are all that is asked
-    /// for; `known` are the unknowns of the steady state, and by how much those of another discretisation differ;
-    /// `watched` are its densities. With a reach of one axis they are those of a line.
+    /// for; `known` are the unknowns of the steady state, and by how much those of another discretisation differ, and
+    /// those of a third scheme, where there is one; `watched` are its densities. With a reach of one axis they are
+    /// those of a line.
     fn add_asked(
         &self,
         report: &mut SolveReport,
         value: f64,
         (system, reach): (&Arc<dyn System>, Option<Reach<'_>>),
-        (known, watched): (Option<Known<'_>>, &[EstimatedDensity]),
+        (known, third, watched): (Option<Known<'_>>, Option<&[f64]>, &[EstimatedDensity]),
     ) -> Result<(), MethodError> {
         // Questions are asked in coordinates that stay.
         if self.source.checks || self.source.problem.family().has_moving_origin() {
@@ -169,7 +173,7 @@ impl GeneratorSession {
             cancellation,
         )?;
         let at = (system, value);
-        add_largest_exponent(report, &self.source, at, known, cancellation)?;
+        add_largest_exponent(report, &self.source, at, (known, third), cancellation)?;
         let unknowns = known.map(|(unknowns, _)| unknowns);
         let asks = &problem.family().questions;
         let is_line_asked = asks.spectrum.is_some() || asks.asks_for_modes();
@@ -252,6 +256,7 @@ impl GeneratorSession {
             escape: generator.escape,
             second,
             along: answer.map(|answer| (answer, near)),
+            third: None,
         })
     }
 }

@@ -42,6 +42,9 @@ impl Varied {
     }
 }
 
+/// The unknowns of a steady state, and by how much those of another discretisation differ.
+pub(super) type Known<'a> = (&'a [f64], &'a [f64]);
+
 /// Densities along a path by the generator.
 #[derive(Debug, Clone)]
 pub struct GeneratorSource {
@@ -160,12 +163,12 @@ impl GeneratorSource {
         assemble(system, self.problem.space(), &options).map_err(|error| self.refused(error))
     }
 
-    /// The generators of a system by two schemes, along the lines of the grid.
-    pub(super) fn assemble_lines(
+    /// The generators of a system by some schemes, along the lines of the grid.
+    pub(super) fn assemble_lines<const N: usize>(
         &self,
         system: &dyn System,
-        schemes: [AdvectiveScheme; 2],
-    ) -> Result<[LineRates; 2], MethodError> {
+        schemes: [AdvectiveScheme; N],
+    ) -> Result<[LineRates; N], MethodError> {
         let lines = assemble_lines(system, self.problem.space(), schemes);
         lines.map_err(|error| self.refused(error))
     }

@@ -150,6 +150,27 @@ impl Axis {
         self.series
     }
 
+    /// Of an axis of Hermite modes, what the masses at its nodes owe to the modes beyond the first `kept`: entry `node ·
+    /// count + other` is what the mass at the other node adds. Of other axes nothing.
+    pub(crate) fn beyond_hermite_modes(&self, kept: usize) -> Vec<f64> {
+        let count = self.count();
+        let Some(Series::Hermite { mean, deviation }) = self.series else {
+            return vec![0.0; count * count];
+        };
+        let values = |x: &f64| hermite_values(count, (x - mean) / deviation);
+        let nodes: Vec<Vec<f64>> = self.nodes.iter().map(values).collect();
+        let mut owed = Vec::with_capacity(count * count);
+        for own in &nodes {
+            // The weight of a node: values times roots of weights are an orthogonal matrix.
+            let weight = 1.0 / own.iter().map(|value| value * value).sum::<f64>();
+            for other in &nodes {
+                let products = own.iter().zip(other).skip(kept).map(|(a, b)| a * b);
+                owed.push(weight * products.sum::<f64>());
+            }
+        }
+        owed
+    }
+
     /// Of an axis of modes, the integrals of the series over bins with these edges: entry `bin · count + node` is what
     /// the mass at a node adds to a bin, by the first `used` modes.
     pub(crate) fn series_weights(&self, edges: &[f64], used: usize) -> Vec<f64> {
