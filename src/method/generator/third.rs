@@ -37,8 +37,8 @@ impl GeneratorSession {
     }
 }
 
-/// Beside planes at which a force jumps all schemes take the density from the same few cells, so that what they err alike
-/// is as large as what they differ by.
+/// Beside planes at which a force jumps all schemes take the density from the same few cells, so that what they err
+/// alike is as large as what they differ by.
 const SHARED_AT_JUMPS: f64 = 2.0;
 
 /// What another scheme changes, with the next term of the series by the factors of the first one. At planes at which a

@@ -150,8 +150,8 @@ impl Axis {
         self.series
     }
 
-    /// Of an axis of Hermite modes, what the masses at its nodes owe to the modes beyond the first `kept`: entry `node ·
-    /// count + other` is what the mass at the other node adds. Of other axes nothing.
+    /// Of an axis of Hermite modes, what the masses at its nodes owe to the modes beyond the first `kept`: entry `node
+    /// · count + other` is what the mass at the other node adds. Of other axes nothing.
     pub(crate) fn beyond_hermite_modes(&self, kept: usize) -> Vec<f64> {
         let count = self.count();
         let Some(Series::Hermite { mean, deviation }) = self.series else {
