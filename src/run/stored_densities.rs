@@ -187,9 +187,11 @@ impl Observed {
         };
         let variants = self.variants(path, index)?;
         let truncation = self.truncation(path, index)?;
-        // What is stored has what the ends may have changed.
+        // What is stored has what ends and numbers of modes may have changed.
         let standard_error = match variants.second_scheme() {
-            Some(second) if truncation.share > 0.0 => errors_by_schemes(&density, second),
+            Some(second) if truncation != Truncation::default() => {
+                errors_by_schemes(&density, second)
+            }
             _ => in_cells(&self.error)?,
         };
         Ok(EstimatedDensity {
