@@ -105,10 +105,7 @@ impl Family {
     /// assert_eq!(family.at(0.1).unwrap().facts().reflecting[&0].0, 0.0);
     /// ```
     #[must_use]
-    pub(crate) fn with_walls(
-        mut self,
-        walls: impl IntoIterator<Item = (usize, (f64, f64))>,
-    ) -> Self {
+    pub fn with_walls(mut self, walls: impl IntoIterator<Item = (usize, (f64, f64))>) -> Self {
         self.walls = walls.into_iter().collect();
         self
     }

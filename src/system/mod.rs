@@ -77,7 +77,7 @@ pub use spectrum::{Band, Fluctuating, Sides, SpectrumQuestion};
 pub(crate) use symmetry::{proved_symmetry, symmetry_over_a_period};
 pub(crate) use tangent::TangentFault;
 pub(crate) use tangent::{HALF_TURN, Tangent};
-pub(crate) use typed::DampedParticle;
+pub use typed::DampedParticle;
 pub(crate) use typed::FormulaHazard;
 pub use typed::{
     CompiledDrift, FormulaPlace, Interpretation, PeriodFault, TypedEquations, TypedModel,

@@ -10,7 +10,7 @@ use crate::system::{Family, Linearised};
 
 /// What changes on a curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum StabilityKind {
+pub enum StabilityKind {
     /// The largest Lyapunov exponent of the fixed point passes zero: a D-bifurcation.
     Exponent,
     /// The stationary density of all axes turns from infinite to zero at the fixed point: a P-bifurcation, at which its
@@ -23,7 +23,7 @@ impl StabilityKind {
     const ALL: [Self; 2] = [Self::Exponent, Self::Density];
 
     /// What is zero on the curve.
-    pub(crate) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Exponent => "largest exponent of the fixed point",
             Self::Density => "thinning at the fixed point",
@@ -31,7 +31,7 @@ impl StabilityKind {
     }
 
     /// What happens there.
-    pub(crate) fn words(self) -> &'static str {
+    pub fn words(self) -> &'static str {
         match self {
             Self::Exponent => "the largest exponent of the fixed point is zero",
             Self::Density => "the density turns from infinite to zero at the fixed point",
@@ -49,7 +49,7 @@ impl StabilityKind {
 
 /// A point of such a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct StabilityPoint {
+pub struct StabilityPoint {
     /// Values of both parameters.
     pub values: [f64; 2],
     /// Half-width of the band that is believed to hold the true curve, across the curve, as a share of the sides of the
@@ -59,7 +59,7 @@ pub(crate) struct StabilityPoint {
 
 /// A curve on which the stability of a fixed point, or the density beside it, changes.
 #[derive(Debug, Clone)]
-pub(crate) struct StabilityCurve {
+pub struct StabilityCurve {
     /// `D1`, `D2`, … of D-bifurcations; `P1`, … of densities at the fixed point.
     pub name: String,
     /// What changes there.
@@ -77,7 +77,7 @@ impl StabilityCurve {
     }
 
     /// The largest error of its points.
-    pub(crate) fn largest_error(&self) -> f64 {
+    pub fn largest_error(&self) -> f64 {
         let errors = self.points.iter().map(|point| point.error);
         errors.fold(0.0, f64::max)
     }
@@ -110,7 +110,7 @@ impl StabilityCurve {
 /// # Ok(())
 /// # }
 /// ```
-pub(crate) fn stability_curves(family: &Family, plane: &Plane) -> Vec<StabilityCurve> {
+pub fn stability_curves(family: &Family, plane: &Plane) -> Vec<StabilityCurve> {
     let Some(state) = family.questions.fixed_point.as_deref() else {
         return Vec::new();
     };

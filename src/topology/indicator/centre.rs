@@ -16,15 +16,15 @@ impl IndicatorKind {
     /// p''/p of a marginal at its centre of symmetry.
     pub const CURVATURE: Self = Self(&CURVATURE);
     /// The same half a turn from the centre, on an axis that closes on itself: a reflection holds that place too.
-    pub(crate) const OPPOSITE_CURVATURE: Self = Self(&OPPOSITE_CURVATURE);
+    pub const OPPOSITE_CURVATURE: Self = Self(&OPPOSITE_CURVATURE);
     /// Slope of log p on the upper side of a kink at the centre of symmetry; in a symmetric density half its jump.
     pub const KINK_SLOPE: Self = Self(&KINK_SLOPE);
     /// Curvature of a joint density along a kink through the centre of symmetry.
     pub const CURVATURE_ALONG_KINK: Self = Self(&ALONG_KINK);
     /// The lower of the two principal curvatures of a joint density at its centre, axes scaled to their ranges.
-    pub(crate) const LOWER_CURVATURE: Self = Self(&LOWER);
+    pub const LOWER_CURVATURE: Self = Self(&LOWER);
     /// The upper one.
-    pub(crate) const UPPER_CURVATURE: Self = Self(&UPPER);
+    pub const UPPER_CURVATURE: Self = Self(&UPPER);
 }
 
 const CURVATURE: Traits = Traits {
