@@ -9,6 +9,7 @@ use super::{Drawn, Sketch};
 use crate::compare::Comparison;
 use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::frame::Scale;
+use crate::figure::canvas::letters::text_width;
 use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Heading, Page, Rectangle};
 use crate::figure::canvas::style::{MARGIN, TEXT};
@@ -164,7 +165,16 @@ fn write_lines(
     if page.look().page.is_none() {
         return write_above(page, map, above(method, value, is_first, family));
     }
-    write_above(page, map, above(method, value, false, family));
+    let title = above(method, value, false, family);
+    let fits = text_width(page.look(), &title, TEXT, false) <= map.width + 0.5 * BETWEEN.0;
+    // It stands beside the map of SGCM itself.
+    let is_short = method == Method::SgcmSlope && !fits;
+    let title = if is_short {
+        "corrected".to_owned()
+    } else {
+        title
+    };
+    write_above(page, map, title);
     if is_first {
         let higher = Rectangle {
             top: map.top - 1.3 * TEXT,
