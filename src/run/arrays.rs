@@ -105,14 +105,14 @@ impl Layout {
     }
 
     /// One of the parts of a density, but its kinks; of replicates so many.
-    pub(super) fn part(part: Part, family: &Family, estimate: &EstimatedDensity) -> Self {
+    pub(super) fn part(part: DensityPart, family: &Family, estimate: &EstimatedDensity) -> Self {
         let observable = estimate.observable;
         let long_name = part.long_name(&words(family, observable));
         let mut layout = Self::of_cells(family, estimate, part.name(family, observable), long_name);
         match (part, &estimate.variants) {
-            (Part::Density, _) => return layout.with_facts(family, estimate),
-            (Part::Truncated, _) => layout.dimensions.truncate(1),
-            (Part::Replicates, Variants::Jackknife(all)) => {
+            (DensityPart::Density, _) => return layout.with_facts(family, estimate),
+            (DensityPart::Truncated, _) => layout.dimensions.truncate(1),
+            (DensityPart::Replicates, Variants::Jackknife(all)) => {
                 let count = all.len() as u64;
                 layout.dimensions.insert(1, (REPLICATE.to_owned(), count));
             }
@@ -141,7 +141,10 @@ impl Layout {
         kink: &Kink,
         number: usize,
     ) -> Self {
-        let name = format!("{}{number}", Part::Kinks.name(family, estimate.observable));
+        let name = format!(
+            "{}{number}",
+            DensityPart::Kinks.name(family, estimate.observable)
+        );
         let axes = estimate.observable.axes();
         let axis = axes.get(kink.axis).map_or("?", |&axis| family.axis(axis));
         let density = words(family, estimate.observable);
@@ -216,14 +219,14 @@ pub(super) fn edges(axis: &str) -> String {
 
 /// What is stored of a density, an array each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Part {
+pub(super) enum DensityPart {
     /// The density itself.
     Density,
     /// Its standard error.
     Error,
     /// The density by a second discretisation.
     Second,
-    /// By how much closed ends may change the density.
+    /// By how much closed ends, and modes that are not there, may change the density.
     Closed,
     /// The share by which the ends of the ranges may have changed all of the density.
     Truncated,
@@ -234,11 +237,11 @@ pub(super) enum Part {
 }
 
 words! {
-    Part, ending: Density: "", Error: "_error", Second: "_second", Closed: "_closed", Truncated: "_truncated",
+    DensityPart, ending: Density: "", Error: "_error", Second: "_second", Closed: "_closed", Truncated: "_truncated",
     Replicates: "_replicate", Kinks: "_kink_"
 }
 
-impl Part {
+impl DensityPart {
     /// Name of its array; of kinks without their numbers.
     pub(super) fn name(self, family: &Family, observable: Observable) -> String {
         format!("p_{}{}", observable.name(family), self.ending())
@@ -312,14 +315,14 @@ pub(super) fn names(family: &Family, observables: &[Observable]) -> Vec<Named> {
     }
     for &observable in observables {
         let density_of = words(family, observable);
-        let named = |part: Part| {
+        let named = |part: DensityPart| {
             let what = format!("{}{density_of}", part.before());
             Named {
-                is_numbered: part == Part::Kinks,
+                is_numbered: part == DensityPart::Kinks,
                 ..Named::new(part.name(family, observable), what)
             }
         };
-        names.extend(Part::ALL.map(named));
+        names.extend(DensityPart::ALL.map(named));
     }
     names
 }

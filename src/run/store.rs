@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 
 use super::RunError;
-use super::arrays::{Layout, Part};
+use super::arrays::{DensityPart, Layout};
 use super::tree::rename;
 use super::zarr::{self, Chunks, Row};
 use crate::UNFINISHED;
@@ -113,33 +113,45 @@ impl<'a> Store<'a> {
     fn add_estimate(&mut self, family: &Family, index: usize, estimate: &'a EstimatedDensity) {
         let whole = |values: &'a [f64]| vec![Cow::Borrowed(values)];
         let values = whole(&estimate.density.values);
-        self.put(Layout::part(Part::Density, family, estimate), index, values);
+        self.put(
+            Layout::part(DensityPart::Density, family, estimate),
+            index,
+            values,
+        );
         let errors = vec![Cow::Owned(estimate.stated_errors())];
-        self.put(Layout::part(Part::Error, family, estimate), index, errors);
+        self.put(
+            Layout::part(DensityPart::Error, family, estimate),
+            index,
+            errors,
+        );
         let truncation = &estimate.truncation;
         if truncation.share > 0.0 {
             let share = vec![vec![truncation.share].into()];
             self.put(
-                Layout::part(Part::Truncated, family, estimate),
+                Layout::part(DensityPart::Truncated, family, estimate),
                 index,
                 share,
             );
         }
         if !truncation.change.is_empty() {
             let change = whole(&truncation.change);
-            self.put(Layout::part(Part::Closed, family, estimate), index, change);
+            self.put(
+                Layout::part(DensityPart::Closed, family, estimate),
+                index,
+                change,
+            );
         }
         match &estimate.variants {
             Variants::None => {}
             Variants::Scheme(second) => {
                 self.put(
-                    Layout::part(Part::Second, family, estimate),
+                    Layout::part(DensityPart::Second, family, estimate),
                     index,
                     whole(second),
                 );
             }
             Variants::Jackknife(replicates) => {
-                let layout = Layout::part(Part::Replicates, family, estimate);
+                let layout = Layout::part(DensityPart::Replicates, family, estimate);
                 let parts = replicates.iter().map(|one| Cow::Borrowed(&one[..]));
                 self.put(layout, index, parts.collect());
             }

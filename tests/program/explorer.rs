@@ -29,8 +29,8 @@ fn has(program: &str) -> bool {
     Command::new(program).arg("--version").output().is_ok()
 }
 
-/// Reads a page with the page's own sources.
-const READ: &str = r"
+/// Runs what the page's own sources make of a page, up to a body that returns what is wanted.
+const BEFORE: &str = r"
 const fs = require('fs');
 const [page, ...sources] = process.argv.slice(2);
 const html = fs.readFileSync(page, 'utf8');
@@ -38,6 +38,31 @@ const document = { getElementById: (id) => ({ textContent: html.split(`id=\x22${
 const code = sources.map((name) => fs.readFileSync(name, 'utf8')).join('');
 const run = new Function('document', 'fromNode', `${code}
   return (async () => {
+";
+
+/// After that body.
+const AFTER: &str = r"
+  })();`);
+run(document).then((found) => process.stdout.write(JSON.stringify(found)));
+";
+
+/// What Node.js makes of a page by such a body, after some of the page's own sources.
+fn read_by_page(room: &Room, page: &Path, sources: &[&str], body: &str) -> serde_json::Value {
+    room.write("read.cjs", format!("{BEFORE}{body}{AFTER}"));
+    let folder = shipped("src/explore/page");
+    let output = Command::new("node")
+        .arg(room.path("read.cjs"))
+        .arg(page)
+        .args(sources.iter().map(|name| folder.join(format!("{name}.js"))))
+        .output()
+        .unwrap();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{errors}");
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// The stored densities, as they are unpacked.
+const READ: &str = r"
     const bytes = await readBlock('scene');
     const told = JSON.parse(new TextDecoder().decode(bytes));
     const found = { arrays: [] };
@@ -48,27 +73,16 @@ const run = new Function('document', 'fromNode', `${code}
       found.arrays.push({ top: arrays.values.top, frames: at.map((_, i) => Array.from(packed.frame(i))) });
     }
     return found;
-  })();`);
-run(document).then((found) => process.stdout.write(JSON.stringify(found)));
 ";
 
 /// The columns of numbers along the sweep, as the page's own sources make them.
 const NUMBERS: &str = r"
-const fs = require('fs');
-const [page, ...sources] = process.argv.slice(2);
-const html = fs.readFileSync(page, 'utf8');
-const document = { getElementById: (id) => ({ textContent: html.split(`id=\x22${id}\x22>`)[1].split('</script>')[0] }) };
-const code = sources.map((name) => fs.readFileSync(name, 'utf8')).join('');
-const run = new Function('document', 'fromNode', `${code}
-  return (async () => {
     const told = JSON.parse(new TextDecoder().decode(await readBlock('scene')));
     const columns = columnsOf(told, told.frames);
     const found = Object.fromEntries(columns.map((one) => [one.name, seriesOf(one, told.frames)]));
     const first = firstColumn(told, columns).name;
     const ranges = Object.fromEntries(columns.map((one) => [one.name, rangeOf(found[one.name], (value) => value)]));
     return { first, found, ranges };
-  })();`);
-run(document).then((found) => process.stdout.write(JSON.stringify(found)));
 ";
 
 /// A number along the sweep is what the table of points has, with its error; the axis holds it.
@@ -84,22 +98,8 @@ fn the_numbers_along_the_sweep_are_those_of_the_table() {
         "sweep sweeps/bistable.toml --quiet --out run sweep.points=7 cells.x.count=60 '{passage}'"
     ));
     room.done("explore run --html page.html");
-    let script = room.path("numbers.cjs");
-    std::fs::write(&script, NUMBERS).unwrap();
     let sources = ["unpack", "numbers", "along"];
-    let sources = sources.map(|name| shipped(&format!("src/explore/page/{name}.js")));
-    let output = Command::new("node")
-        .arg(&script)
-        .arg(room.path("page.html"))
-        .args(sources)
-        .output()
-        .unwrap();
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let page: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let page = read_by_page(&room, &room.path("page.html"), &sources, NUMBERS);
     // What was asked for stands first.
     assert_eq!(page["first"], "out_mean");
     let table = room.table("run/points.csv").0;
@@ -135,18 +135,7 @@ fn the_code_of_the_page_reads_the_stored_densities() {
     }
     let room = Room::new();
     let page = explored(&room);
-    room.write("read.cjs", READ);
-    let sources = ["unpack.js"].map(|name| shipped("src/explore/page").join(name));
-    let mut node = Command::new("node");
-    let output = node
-        .arg(room.path("read.cjs"))
-        .arg(&page)
-        .args(sources)
-        .output()
-        .unwrap();
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{errors}");
-    let read: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let read = read_by_page(&room, &page, &["unpack"], READ);
 
     let run = StoredRun::open(&room.path("run")).unwrap();
     let settings = SweepFile::parse("run.json", run.resolved())

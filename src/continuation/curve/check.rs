@@ -115,7 +115,7 @@ impl Task<'_> {
             let mut before = walked.start;
             for index in indices {
                 let is_due = index.abs_diff(walked.start).is_multiple_of(every)
-                    || moved(&walked.points[before], &walked.points[index]) > FARTHEST;
+                    || place_moved(&walked.points[before], &walked.points[index]) > FARTHEST;
                 if index == 0 || index == last || is_due {
                     chosen.push(index);
                     before = index;
@@ -270,7 +270,7 @@ fn between(checks: &[Check], nodes: &[WalkPoint], index: usize, of_distance: f64
 }
 
 /// How far the indicator's place moves between two points, in ranges of the axis along which it is more.
-fn moved(one: &WalkPoint, other: &WalkPoint) -> f64 {
+fn place_moved(one: &WalkPoint, other: &WalkPoint) -> f64 {
     let axes = one.reading.density.axes.iter();
     let places = one.reading.indicator.place.iter();
     let pairs = axes.zip(places.zip(&other.reading.indicator.place));

@@ -9,13 +9,12 @@
 //! of a sweep's time, and the modes of friction states are judged by what the last of them carry.
 
 use super::session::{GeneratorSession, PointSolve};
+use super::truncation::OF_AN_ANSWER;
 use crate::density::EstimatedDensity;
 use crate::generator::cell_masses;
 use crate::method::MethodError;
+use crate::method::watched::differences;
 use crate::space::{Axis, CellSpace, Series};
-
-/// Relative error of an answer.
-const ROUGH: f64 = 0.1;
 
 /// One mode of so many is left out, and at least one of each parity. What a last one alone carries passes through zero.
 const MODES_A_MODE_LEFT_OUT: usize = 5;
@@ -36,26 +35,22 @@ impl GeneratorSession {
             return Ok(());
         }
         let unknowns = &solved.steady.mass;
-        let last = minus(unknowns, &of_first_modes(&space, unknowns));
+        let last = differences(&of_first_modes(&space, unknowns), unknowns);
         // The schemes differ along the cells alone, in what is small against the masses as the last modes are.
         let fed = of_first_modes(&space, &second.product(&last));
         let fed: Vec<f64> = fed.iter().map(|rate| -rate).collect();
-        let answer = self.solver.response(&fed, unknowns, None, ROUGH)?;
-        let fewer = of_first_modes(&space, &minus(&answer, &last));
-        let fewer: Vec<f64> = fewer.iter().zip(&last).map(|(a, w)| a - w).collect();
+        let answer = self.solver.response(&fed, unknowns, None, OF_AN_ANSWER)?;
+        let fewer = of_first_modes(&space, &differences(&last, &answer));
+        let fewer = differences(&last, &fewer);
         let there: Vec<f64> = unknowns.iter().zip(&fewer).map(|(u, du)| u + du).collect();
         let there = cell_masses(solved.system.as_ref(), &space, &there);
         let maps = self.source.maps(solved.value)?;
-        let changes = maps.changes(&self.source.problem, &minus(&there, masses))?;
+        let changes = maps.changes(&self.source.problem, &differences(masses, &there))?;
         for (one, change) in densities.iter_mut().zip(changes) {
             one.truncation.add(&change);
         }
         Ok(())
     }
-}
-
-fn minus(a: &[f64], b: &[f64]) -> Vec<f64> {
-    a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
 /// What all modes but the last ones of each axis of coloured noise carry of masses at the nodes.

@@ -11,8 +11,8 @@ use crate::generator::cell_masses;
 use crate::method::MethodError;
 use crate::method::report::Missing;
 
-/// Relative error of an answer.
-const ROUGH: f64 = 0.1;
+/// Relative error of an answer, to what ends do or to what modes do that are not there.
+pub(super) const OF_AN_ANSWER: f64 = 0.1;
 
 /// Most terms of the series.
 const TERMS: usize = 4;
@@ -76,7 +76,7 @@ impl GeneratorSession {
         for number in 1..=TERMS {
             let back = solved.escape.iter().zip(&term);
             let back: Vec<f64> = back.map(|(rate, mass)| rate * mass).collect();
-            term = self.solver.response(&back, unknowns, None, ROUGH)?;
+            term = self.solver.response(&back, unknowns, None, OF_AN_ANSWER)?;
             let before = std::mem::replace(&mut size, term.iter().map(|one| one.abs()).sum());
             // The last term stands for those after it.
             let ratio = (size / before).min(LARGEST_RATIO);

@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use super::super::arrays::Part;
+use super::super::arrays::DensityPart;
 use super::super::number::format_number;
 use super::super::{RunError, write_anywhere};
 use crate::continuation::{Point, Subject};
@@ -16,7 +16,7 @@ use crate::system::Family;
 pub(super) fn write(subject: &Subject, points: &[&Point], folder: &Path) -> Result<(), RunError> {
     let family = &subject.family;
     for (index, observable) in subject.observables.iter().enumerate() {
-        let name = Part::Density.name(family, *observable);
+        let name = DensityPart::Density.name(family, *observable);
         let mut text = header(family, &observable.axes(), &name);
         for point in points {
             if let Some(one) = point.densities.get(index) {

@@ -5,7 +5,7 @@ mod netcdf;
 
 use std::path::Path;
 
-use super::arrays::{Layout, Part};
+use super::arrays::{DensityPart, Layout};
 use super::{RunError, arrays, bifurcations_csv};
 use crate::continuation::measure::{DEVIATION, MEAN};
 use crate::continuation::{MeasureKind, Point, StateField, SweepResult};
@@ -275,16 +275,20 @@ fn density_arrays(
         _ => None,
     };
     let mut arrays = vec![
-        all(Part::Density.name(family, observable), &density, "density")
-            .with("valid_min", Attribute::Number(0.0)),
         all(
-            Part::Error.name(family, observable),
+            DensityPart::Density.name(family, observable),
+            &density,
+            "density",
+        )
+        .with("valid_min", Attribute::Number(0.0)),
+        all(
+            DensityPart::Error.name(family, observable),
             &error,
             "standard error of the density",
         ),
     ];
     if matches!(like.variants, Variants::Scheme(_)) {
-        let name = Part::Second.name(family, observable);
+        let name = DensityPart::Second.name(family, observable);
         arrays.push(all(name, &second, "density by a second discretisation"));
     }
     arrays

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::super::arrays::Part;
+use super::super::arrays::DensityPart;
 use super::{Observed, StoredKink};
 use crate::density::{NEGLIGIBLE, Observable, layout_axis};
 use crate::run::place::check_files;
@@ -76,7 +76,7 @@ impl Opened {
         (space, bins): (&CellSpace, &[Axis]),
         observable: Observable,
     ) -> Result<Observed, RunError> {
-        let name = Part::Density.name(family, observable);
+        let name = DensityPart::Density.name(family, observable);
         if !self.has(&name) {
             return Err(RunError::NotStored {
                 observable: observable.name(family),
@@ -113,11 +113,11 @@ impl Opened {
         let negligible = negligible.and_then(Value::as_f64);
         Ok(Observed {
             observable,
-            error: self.shaped(&Part::Error.name(family, observable), &shape)?,
-            second: self.optional(&Part::Second.name(family, observable), &shape)?,
-            truncated: self.optional(&Part::Truncated.name(family, observable), &[])?,
-            closed: self.optional(&Part::Closed.name(family, observable), &shape)?,
-            replicates: self.optional(&Part::Replicates.name(family, observable), &shape)?,
+            error: self.shaped(&DensityPart::Error.name(family, observable), &shape)?,
+            second: self.optional(&DensityPart::Second.name(family, observable), &shape)?,
+            truncated: self.optional(&DensityPart::Truncated.name(family, observable), &[])?,
+            closed: self.optional(&DensityPart::Closed.name(family, observable), &shape)?,
+            replicates: self.optional(&DensityPart::Replicates.name(family, observable), &shape)?,
             centre: centre.filter(|centre| centre.len() == axes.len()),
             kinks: self.kinks(family, observable, &shape)?,
             negligible: negligible.unwrap_or(NEGLIGIBLE),
@@ -133,7 +133,7 @@ impl Opened {
         observable: Observable,
         shape: &[u64],
     ) -> Result<Vec<StoredKink>, RunError> {
-        let prefix = Part::Kinks.name(family, observable);
+        let prefix = DensityPart::Kinks.name(family, observable);
         let names = self.names.iter().filter(|name| name.starts_with(&prefix));
         names
             .map(|name| {
