@@ -210,7 +210,8 @@ class _Found:
         xarray Dataset.
 
         Cells have centres `x`, edges `x_edges` and CF bounds `x_bounds`; attributes hold equations, the parameters that
-        are held (JSON) and the table of changes (CSV). What the solver leaves below zero in a density is zero here."""
+        are held (JSON) and the table of changes (CSV). What the solver leaves below zero in a density is zero
+        here, and what is left is scaled so that the integral stays."""
         import xarray
 
         arrays, attributes = self._raw.arrays()

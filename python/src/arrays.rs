@@ -108,7 +108,7 @@ pub(crate) fn field<'py>(
     Ok(Some((values.into_pyarray(py), field?, errors?, axes)))
 }
 
-/// A density by its name, without what a solver leaves below zero; `None` where no value has it.
+/// A density by its name, above zero; `None` where no value has it.
 pub(crate) fn densities<'py>(
     py: Python<'py>,
     result: &SweepResult,
@@ -126,13 +126,10 @@ pub(crate) fn densities<'py>(
     for (value, one) in known {
         let numbers = one.observable.axes();
         let (names, shape) = cells(py, family, numbers.iter().copied().zip(&one.density.axes));
-        let density = one.density.values.iter();
-        let density = density.map(|&value| if value < 0.0 { 0.0 } else { value });
-        let density: Vec<f64> = density.collect();
-        let density = density.into_pyarray(py).reshape(shape.clone())?;
-        let errors = one.stated_errors().into_pyarray(py).reshape(shape)?;
+        let arrays = one.above_zero().map(|numbers| numbers.into_pyarray(py));
+        let [density, errors] = arrays.map(|array| array.reshape(shape.clone()));
         axes = names;
-        rows.push((value, density, errors));
+        rows.push((value, density?, errors?));
     }
     Ok(Some((axes, rows)))
 }

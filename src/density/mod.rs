@@ -242,6 +242,24 @@ impl EstimatedDensity {
             .collect()
     }
 
+    /// Values and their stated errors as other programs get them: what the solver leaves below zero is zero, and what
+    /// is left is scaled so that the integral stays.
+    pub fn above_zero(&self) -> [Vec<f64>; 2] {
+        let masses = self.density.masses();
+        let below = negative_part(&masses);
+        let all: f64 = masses.iter().sum();
+        let scale = match all + below {
+            left if left > 0.0 => all / left,
+            _ => 1.0,
+        };
+        let above = |&value: &f64| if value < 0.0 { 0.0 } else { value * scale };
+        let errors = self.stated_errors().into_iter();
+        [
+            self.density.values.iter().map(above).collect(),
+            errors.map(|error| error * scale).collect(),
+        ]
+    }
+
     /// What the ends of the ranges may have changed of a value.
     pub(crate) fn truncated(&self, cell: usize) -> f64 {
         let value = self.density.values.get(cell).unwrap_or(&0.0);

@@ -128,8 +128,8 @@ fn solved_points(result: &SweepResult) -> Result<Vec<&Point>, RunError> {
 }
 
 impl DataSet {
-    /// The densities and moments of a result. Cells have bounds beside their edges. What the solver leaves below zero
-    /// in a density is zero here, so that `valid_min` holds and a map of it runs from one end of its colours.
+    /// The densities and moments of a result. Cells have bounds beside their edges. Densities are
+    /// [above zero](EstimatedDensity::above_zero): `valid_min` holds, and a map runs from one end of its colours.
     ///
     /// # Errors
     /// [`RunError::NothingToExport`] when no point has a density; [`RunError::Table`].
@@ -264,12 +264,12 @@ fn density_arrays(
         NamedArray::new(name, dimensions.clone(), values.collect(), long_name)
     };
     let observable = like.observable;
-    let density = |one: &EstimatedDensity| {
-        let values = one.density.values.iter();
-        let clipped = values.map(|&value| if value < 0.0 { 0.0 } else { value });
-        Some(clipped.collect())
+    let part = |number: usize| {
+        move |one: &EstimatedDensity| {
+            let mut parts = one.above_zero();
+            Some(std::mem::take(&mut parts[number]))
+        }
     };
-    let error = |one: &EstimatedDensity| Some(one.stated_errors());
     let second = |one: &EstimatedDensity| match &one.variants {
         Variants::Scheme(second) => Some(second.clone()),
         _ => None,
@@ -277,13 +277,13 @@ fn density_arrays(
     let mut arrays = vec![
         all(
             DensityPart::Density.name(family, observable),
-            &density,
+            &part(0),
             "density",
         )
         .with("valid_min", Attribute::Number(0.0)),
         all(
             DensityPart::Error.name(family, observable),
-            &error,
+            &part(1),
             "standard error of the density",
         ),
     ];

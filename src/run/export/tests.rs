@@ -101,6 +101,16 @@ fn netcdf_holds_every_array_with_its_dimensions() {
 }
 
 #[test]
+fn densities_are_above_zero_and_keep_their_integral() {
+    let mut one = point(0.5, true).densities.remove(0);
+    one.density.values = vec![-0.25, 1.25];
+    one.standard_error = vec![0.125, 0.25];
+    assert_eq!(one.above_zero(), [vec![0.0, 1.0], vec![0.1, 0.2]]);
+    one.density.values = vec![0.25, 0.5];
+    assert_eq!(one.above_zero(), [vec![0.25, 0.5], vec![0.125, 0.25]]);
+}
+
+#[test]
 fn netcdf_says_what_it_cannot_hold() {
     let array = |name: &str, values: Vec<f64>| NamedArray::line(name, values, String::new());
     let twice = NamedArray {
