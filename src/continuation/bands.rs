@@ -30,17 +30,20 @@ pub(super) fn band(
 }
 
 /// An indicator was lost between two points, or between one of two pairs of neighbours and the other: its zero lies
-/// there, or between there and where the signature changes. `lost` has the lower point of each pair.
+/// there, or between there and where the signature changes, or up to where its readings lead, within the sweep. `lost`
+/// has the lower point of each pair.
 pub(super) fn by_bracket(
     points: &[&Point],
     observables: &[Observable],
     change: &Change,
-    lost: [usize; 2],
+    (lost, reach): ([usize; 2], Option<f64>),
     doubt: Doubt,
 ) -> Located {
-    let ends = lost.iter().flat_map(|&at| [at, at + 1]);
-    let places = ends.chain([change.left, change.right]);
-    let values = places.map(|place| points[place].value);
+    let around = lost.iter().flat_map(|&at| [at, at + 1]);
+    let places = around.chain([change.left, change.right]);
+    let ends = [0, points.len() - 1].map(|place| points[place].value);
+    let reach = reach.map(|value| value.clamp(ends[0], ends[1]));
+    let values = places.map(|place| points[place].value).chain(reach);
     let (lower, upper) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
         (low.min(value), high.max(value))
     });

@@ -159,6 +159,7 @@ impl<'p, 'a> Closer<'p, 'a> {
         let proven: Vec<bool> = look.rows.iter().map(is_proven).collect();
         self.last.retain(|one| !one.is_at(&look));
         self.last.push(look.clone());
+        self.widen(stretch, &mut look.rows, &before);
         look.doubt(&proven);
         // That nothing happens is no more than what two grids may agree on by chance.
         let is_chance = look.rows.is_empty() && found.is_wide && !before.is_empty();
@@ -221,6 +222,30 @@ impl<'p, 'a> Closer<'p, 'a> {
             is_same && (one.value - row.value).abs() <= one.error * (ratio - 1.0) / ratio
         };
         row.zero.as_ref().is_some_and(|zero| zero.is_settled) || before.iter().any(is_like)
+    }
+
+    /// Widens bands that are read off counts and lost indicators, of which nothing but the next grid tells how far they
+    /// are off: by the band on the cells before. Where an end has left that band by d, errors that fall by the ratio r
+    /// of the cells leave d / (r - 1). The ends of the stretch are certain.
+    fn widen(&self, stretch: [f64; 2], rows: &mut [Located], before: &[Located]) {
+        let CellCheck::OnFinerCells { ratio, .. } = self.work.source().subject().cell_check else {
+            return;
+        };
+        for row in rows.iter_mut().filter(|row| row.zero.is_none()) {
+            let mut before = before.iter();
+            let like = before.find(|one| (one.before, one.after) == (row.before, row.after));
+            let Some([lower, upper]) = like.map(Located::hull) else {
+                continue;
+            };
+            let left = |distance: f64| distance.max(0.0) / (ratio - 1.0);
+            let ends = [
+                row.lower.min(lower) - left(lower - row.lower),
+                row.upper.max(upper) + left(row.upper - upper),
+            ];
+            [row.lower, row.upper] = ends.map(|end| end.clamp(stretch[0], stretch[1]));
+            row.value = 0.5 * (row.lower + row.upper);
+            row.error = 0.5 * (row.upper - row.lower);
+        }
     }
 
     /// What finer cells show in a stretch; `None` where there are none, or no work is left for them.

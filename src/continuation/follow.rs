@@ -33,8 +33,9 @@ impl Crossing {
 pub(super) enum Course {
     /// It changes sign between two neighbours.
     Crossing(Box<Crossing>),
-    /// It is lost between the point with this index and the next one, before it changes sign.
-    Lost(usize),
+    /// It is lost between the point with this index and the next one, before it changes sign, which its last two
+    /// readings say that it does before this value.
+    Lost(usize, f64),
     /// From the point with this index or the next one on the density there is no clear multiple of its error, before
     /// the indicator changes sign: nothing tells how far it keeps its sign.
     Sunk(usize),
@@ -73,6 +74,9 @@ pub(super) fn follow(
         return (!is_clear).then_some(Course::Sunk(left));
     };
     let mut last_index = present;
+    let within = inward(points, present, event.above).next();
+    let within = within.and_then(|index| Some((index, at(index, &last.place)?)));
+    let mut before = within.filter(|(_, one)| is_one_place(points, observable, &last, one));
     if last.value <= 0.0 {
         return deeper(points, &at, last, present, event.above, observable);
     }
@@ -83,7 +87,7 @@ pub(super) fn follow(
         else {
             let is_clear = is_clear(&points[index].densities[observable], &last.place, WELL);
             return Some(if is_clear {
-                Course::Lost(gap)
+                Course::Lost(gap, leads_to(points, (last_index, &last), before.as_ref()))
             } else {
                 Course::Sunk(gap)
             });
@@ -91,7 +95,10 @@ pub(super) fn follow(
         // As long as the feature is not counted, what is counted has a shoulder of its own.
         let is_absent = signature(index) == signature(absent);
         if next.value > 0.0 && is_absent && is_between_counted(points[index], observable, &next) {
-            return Some(Course::Lost(gap));
+            return Some(Course::Lost(
+                gap,
+                leads_to(points, (last_index, &last), before.as_ref()),
+            ));
         }
         if next.value <= 0.0 {
             let ends = if event.above {
@@ -105,7 +112,7 @@ pub(super) fn follow(
                 ends,
             })));
         }
-        last = next;
+        before = Some((last_index, std::mem::replace(&mut last, next)));
         last_index = index;
     }
     let certain = last.sign(detector.doubt()) == Some(true);
@@ -126,13 +133,8 @@ fn deeper(
     above: bool,
     observable: usize,
 ) -> Option<Course> {
-    let inward: Vec<usize> = if above {
-        (present + 1..points.len()).collect()
-    } else {
-        (0..present).rev().collect()
-    };
     let (mut last, mut last_index) = (first, present);
-    for index in inward {
+    for index in inward(points, present, above) {
         let next =
             at(index, &last.place).filter(|next| is_one_place(points, observable, &last, next))?;
         if next.value > 0.0 {
@@ -149,10 +151,68 @@ fn deeper(
     None
 }
 
+/// The points from one where a feature is present away from its change, nearest first.
+fn inward(points: &[&Point], present: usize, above: bool) -> impl Iterator<Item = usize> {
+    let count = if above {
+        points.len() - 1 - present
+    } else {
+        present
+    };
+    (1..=count).map(move |steps| {
+        if above {
+            present + steps
+        } else {
+            present - steps
+        }
+    })
+}
+
+/// The value before which an indicator passes zero, from its last reading and the one before. The error of the last
+/// reading, which the one before shares, is on the far side. Where it does not fall, it leads nowhere.
+fn leads_to(
+    points: &[&Point],
+    (last, reading): (usize, &Indicator),
+    before: Option<&(usize, Indicator)>,
+) -> f64 {
+    let value = points[last].value;
+    let error = reading.systematic_error + 2.0 * reading.sampling_error;
+    let zero = before.and_then(|(index, one)| {
+        let readings = [(value, reading.value), (points[*index].value, one.value)];
+        zero_of_power(readings.map(|(at, value)| (at, value + error)))
+    });
+    zero.unwrap_or(value)
+}
+
+/// Where the line through the powers 2/3 of two readings meets zero, the last reading first; `None` where they do not
+/// fall. Beside a symmetric split off the axis an indicator goes like the power 3/2 of the distance, and its zero is
+/// there; beside a fold it goes like the distance, and its zero is nearer.
+fn zero_of_power([last, before]: [(f64, f64); 2]) -> Option<f64> {
+    let [low, high] = [last.1, before.1].map(|value| value.max(0.0).powf(2.0 / 3.0));
+    (low < high).then(|| last.0 - low * (before.0 - last.0) / (high - low))
+}
+
 /// Whether two readings at neighbouring points may be of one place that moved.
 fn is_one_place(points: &[&Point], observable: usize, a: &Indicator, b: &Indicator) -> bool {
     let axes = &points[0].densities[observable].density.axes;
     let moved = a.place.iter().zip(&b.place).zip(axes);
     let apart = moved.map(|((&a, &b), axis)| (axis.apart(a, b) / (axis.to() - axis.from())).abs());
     apart.fold(0.0, f64::max) <= ONE_PLACE
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_through_powers_meets_the_zero_of_a_split_and_passes_that_of_a_fold() {
+        // Both vanish at 0.25, and were read above it, or below it.
+        for side in [1.0, -1.0] {
+            let read =
+                |distance: f64, power: f64| (0.25 + side * distance, 7.0 * distance.powf(power));
+            let zero = |power: f64| zero_of_power([read(0.01, power), read(0.04, power)]).unwrap();
+            assert!((zero(1.5) - 0.25).abs() < 1e-14);
+            assert!((zero(1.0) - 0.25) * side < -0.005);
+            assert!(zero_of_power([read(0.04, 1.0), read(0.01, 1.0)]).is_none());
+        }
+    }
 }

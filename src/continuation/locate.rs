@@ -38,8 +38,9 @@ pub(super) fn label_points(
                     let zero = (change, &**crossing);
                     by_indicator(&solved, subject, zero, detector, options, checks)
                 }
-                Some(Course::Lost(at)) => {
-                    by_bracket(&solved, observables, change, [*at; 2], Doubt::IndicatorLost)
+                Some(Course::Lost(at, reach)) => {
+                    let lost = ([*at; 2], Some(*reach));
+                    by_bracket(&solved, observables, change, lost, Doubt::IndicatorLost)
                 }
                 Some(Course::Sunk(at)) => {
                     let is_above = change.event.as_ref().is_some_and(|event| event.above);
@@ -48,10 +49,12 @@ pub(super) fn label_points(
                     } else {
                         solved.len().saturating_sub(2)
                     };
-                    by_bracket(&solved, observables, change, [*at, end], Doubt::TooLow)
+                    let lost = ([*at, end], None);
+                    by_bracket(&solved, observables, change, lost, Doubt::TooLow)
                 }
                 Some(Course::Beyond(at)) => {
-                    by_bracket(&solved, observables, change, [*at; 2], Doubt::BornBeyond)
+                    let lost = ([*at; 2], None);
+                    by_bracket(&solved, observables, change, lost, Doubt::BornBeyond)
                 }
                 None => by_persistence(&solved, observables, change, detector),
             };

@@ -74,7 +74,7 @@ impl Search<'_> {
             Some(Course::Crossing(crossing)) => {
                 next_value(solved, crossing, self.detector.confidence(), tolerance)
             }
-            Some(Course::Lost(at)) => {
+            Some(Course::Lost(at, _)) => {
                 let (a, b) = (solved[*at].value, solved[*at + 1].value);
                 let middle = 0.5 * (a + b);
                 (b - a > tolerance && middle > a && middle < b).then_some(middle)
