@@ -4,7 +4,7 @@ from __future__ import annotations
 import csv
 import html
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
@@ -117,7 +117,7 @@ class Plots:
 
         ax = _axes(ax)
         arrays = self._of._arrays()
-        parameter, family = arrays[self._of.parameter], arrays["p_" + name]
+        parameter, family = arrays[self._of.parameter], _density(arrays, name)
         edges = np.concatenate([parameter[:1], (parameter[1:] + parameter[:-1]) / 2, parameter[-1:]])
         ax.pcolormesh(edges, arrays[name + "_edges"], family.T, **{"cmap": "viridis", **options})
         marks = {"peak": "white", "valley": "black"}
@@ -138,7 +138,7 @@ class Plots:
         arrays = self._of._arrays()
         values = arrays[self._of.parameter]
         row = 0 if at is None else int(np.abs(values - at).argmin())
-        p, error, x = arrays["p_" + name][row], arrays[f"p_{name}_error"][row], arrays[name]
+        p, error, x = _density(arrays, name)[row], arrays[f"p_{name}_error"][row], arrays[name]
         ax.plot(x, p, **{"label": f"{self._of.parameter} = {values[row]:g}", **options})
         ax.fill_between(x, p - error, p + error, alpha=0.3, linewidth=0)
         ax.set(xlabel=name, ylabel=f"p({name})")
@@ -149,16 +149,24 @@ class Plots:
         import numpy as np
 
         ax = _axes(ax)
+        arrays = self._of._arrays()
+        family = _density(arrays, name)
         found, _ = self._of._raw.arrays()
         dimensions = {array: names for array, names, *_ in found}[f"p_{name}"]
-        arrays = self._of._arrays()
         values = arrays[self._of.parameter]
         row = 0 if at is None else int(np.abs(values - at).argmin())
         _, first, second = dimensions
         edges = (arrays[f"{first}_edges"], arrays[f"{second}_edges"])
-        ax.pcolormesh(*edges, arrays[f"p_{name}"][row].T, **{"cmap": "viridis", **options})
+        ax.pcolormesh(*edges, family[row].T, **{"cmap": "viridis", **options})
         ax.set(xlabel=first, ylabel=second, title=f"{self._of.parameter} = {values[row]:g}")
         return ax
+
+
+def _density(arrays: Mapping[str, Any], name: str) -> Any:
+    if f"p_{name}" not in arrays:
+        known = [one[2:-6] for one in arrays if one.startswith("p_") and one.endswith("_error")]
+        raise KeyError(f"no density of `{name}`: there are {', '.join(known)}")
+    return arrays[f"p_{name}"]
 
 
 def _axes(ax: Any) -> Any:
@@ -441,7 +449,7 @@ class Solution(_Found):
 
     def density(self, name: str = "x") -> NDArray[np.float64]:
         """A density by its name, one value a cell, ∫ = 1; a joint density with a row a cell of its first axis."""
-        found: NDArray[np.float64] = self._arrays()["p_" + name][0]
+        found: NDArray[np.float64] = _density(self._arrays(), name)[0]
         return found
 
     def edges(self, axis: str = "x") -> NDArray[np.float64]:

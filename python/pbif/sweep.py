@@ -13,10 +13,18 @@ from .found import Map, Path, Run, Solution, Tell, how
 Function = Callable[[Any, dict[str, float]], Any]
 
 
+def _axis(left: str) -> str:
+    """The axis of which the left side of an equation is the rate: of `x`, `x'` and `dx/dt` it is `x`."""
+    left = left.strip()
+    if left.startswith("d") and left.endswith("/dt"):
+        return left[1:-3].strip()
+    return left.removesuffix("'")
+
+
 class System:
     """A system of stochastic differential equations: your own, or a built-in one by its name.
 
-    `equations` are lines `x = …` joined by `;` or line ends, or a mapping; `noise` gives an axis its amplitude, or a
+    `equations` are lines `x = …`, `x' = …` or `dx/dt = …` joined by `;` or line ends, or a mapping; `noise` gives an axis its amplitude, or a
     list of them. Other keywords are values of parameters. The language is that of sweep files.
 
     >>> import pbif
@@ -60,7 +68,7 @@ class System:
         if isinstance(equations, str):
             lines = [line for line in equations.replace(";", "\n").splitlines() if line.strip()]
             pairs = [line.partition("=") for line in lines]
-            equations = {name.strip(): right.strip() for name, _, right in pairs}
+            equations = {_axis(left): right.strip() for left, _, right in pairs}
         tables = {"equations": equations, "noise": noise, "define": define, "bounds": bounds}
         self._system: dict[str, Any] = {"model": model} if model else {}
         if title:

@@ -65,6 +65,18 @@ def test_bad_input_has_the_words_of_the_program_and_a_place() -> None:
         pbif.open("there/is/no/run")
 
 
+def test_equations_are_written_as_rates_too_and_cells_as_numbers() -> None:
+    texts = ["x = y; y = -y - x", "x' = y; y' = -y - x", "dx/dt = y\ndy/dt = -y - x"]
+    given = [pbif.System(text, noise={"y": "a"}, a=1.0).prepare("a", 1, 2, 2, cells={"x": 20, "y": 20}) for text in texts]
+    assert given[0].toml == given[1].toml == given[2].toml
+    assert given[0].density(1.0).density("xy").shape == (20, 20)
+
+
+def test_a_density_that_is_not_there_is_told_with_those_that_are(run: pbif.Run) -> None:
+    with pytest.raises(KeyError, match="no density of `z`: there are x"):
+        run.plot.diagram("z")
+
+
 def test_arrays_are_densities_with_bounds(run: pbif.Run) -> None:
     xarray = pytest.importorskip("xarray")
     data = run.to_xarray()

@@ -34,14 +34,27 @@ pub(super) fn in_order(mut found: Vec<(Located, &Change)>) -> Vec<Located> {
 }
 
 /// Where features come and go from point to point, one row says from where to where, instead of one a point. What has a
-/// place of its own keeps its row, however wide its error.
-pub(super) fn without_flicker(rows: Vec<Located>) -> Vec<Located> {
+/// place of its own keeps its row, however wide its error. Rows that are made so may overlap, and are one then.
+pub(super) fn without_flicker(mut rows: Vec<Located>) -> Vec<Located> {
+    loop {
+        let count = rows.len();
+        rows = merged(&rows);
+        if rows.len() == count {
+            return rows;
+        }
+    }
+}
+
+fn merged(rows: &[Located]) -> Vec<Located> {
     let mut kept = Vec::new();
     for run in rows.chunk_by(is_one_doubt) {
         let (first, last) = (&run[0], &run[run.len() - 1]);
         let is_too_low = run.iter().any(|row| row.doubts.contains(&Doubt::TooLow));
         let returns = run.len() > 1 && first.before == last.after;
-        if run.len() < FLICKER && !returns {
+        let is_of_several =
+            |row: &Located| matches!(row.doubts.first(), Some(Doubt::Flicker | Doubt::Stages));
+        let are_many = run.len() >= FLICKER || returns || run.iter().any(is_of_several);
+        if run.len() == 1 || !are_many {
             kept.extend_from_slice(run);
             continue;
         }
@@ -161,4 +174,42 @@ pub(super) fn merge(first: &mut Located, second: &Located) {
     };
     let is_one = first.indicator() == second.indicator() || (of_flank(first) && of_flank(second));
     first.is_several |= second.is_several || !is_one;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::topology::Signature;
+
+    #[test]
+    fn rows_that_overlap_once_they_are_merged_are_one() {
+        let counted = |peaks: usize| Signature {
+            peaks,
+            ..Signature::default()
+        };
+        let row = |value: f64, error: f64, peaks: [usize; 2]| Located {
+            label: String::new(),
+            value,
+            error,
+            lower: value - error,
+            upper: value + error,
+            observable: Observable::Marginal(0),
+            before: counted(peaks[0]),
+            after: counted(peaks[1]),
+            zero: None,
+            is_several: false,
+            doubts: vec![Doubt::IndicatorLost],
+        };
+        // Neither of the first two is as wide as what lies between them; what is made of the others holds both.
+        let apart = [row(-9.0, 0.1, [1, 2]), row(-8.0, 0.1, [2, 3])];
+        assert_eq!(without_flicker(apart.to_vec()), apart);
+        let wide = [[3, 4], [4, 5], [5, 6]].map(|peaks| row(0.0, 10.0, peaks));
+        let [first, second] = apart;
+        let rows = without_flicker([first, second].into_iter().chain(wide).collect());
+        let [one] = rows.as_slice() else {
+            panic!("{rows:?}")
+        };
+        assert_eq!((one.before, one.after), (counted(1), counted(6)));
+        assert_eq!([one.lower, one.upper], [-10.0, 10.0]);
+    }
 }

@@ -1,16 +1,17 @@
-//! One spelling for each name of a file's own equations: `α` is `alpha` in formulas, and so it is in the rest of the
-//! file.
+//! One spelling for what a file may say in two ways. A name of its own equations: `α` is `alpha` in formulas, and so it
+//! is in the rest of the file. The cells of an axis: a number, `x = 60`, is their count.
 //!
 //! Axes are spelled as in `system.equations`, parameters as in `system.parameters`. Names of built-in models are left
 //! as they are.
 
 use super::document::Document;
-use super::value::{SpannedValue, Value};
+use super::value::{Entry, SpannedValue, Value};
 use crate::formula::language::{canonical_name, check_name};
 
-/// The document with the names of its equations spelled alike everywhere.
+/// The document with the names of its equations and the counts of cells spelled alike everywhere.
 pub(super) fn respell(document: &Document) -> Document {
     let mut document = document.clone();
+    for_node(&mut document.root, &["cells"], &mut counts);
     let names = |path: &[&str]| -> Vec<String> {
         let entries = document.root.find(path).map(|entry| entry.node.entries());
         let entries = entries.unwrap_or_default().iter();
@@ -46,6 +47,26 @@ fn for_node(node: &mut SpannedValue, path: &[&str], change: &mut dyn FnMut(&mut 
         for entry in entries.iter_mut().filter(|entry| entry.key == *first) {
             for_node(&mut entry.node, rest, change);
         }
+    }
+}
+
+/// Makes a table of a whole number of cells; how accurate all cells are is another number.
+fn counts(cells: &mut SpannedValue) {
+    let Value::Table(entries) = &mut cells.value else {
+        return;
+    };
+    let axes = entries.iter_mut().filter(|entry| entry.key != "accuracy");
+    for axis in axes.filter(|axis| matches!(axis.node.value, Value::Integer(_))) {
+        let place = axis.node.place.clone();
+        let count = Entry {
+            key: "count".to_owned(),
+            key_place: place.clone(),
+            node: axis.node.clone(),
+        };
+        axis.node = SpannedValue {
+            value: Value::Table(vec![count]),
+            place,
+        };
     }
 }
 

@@ -115,7 +115,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("cells.<axis>.to", Kind::Number(ANY), Rule("the model's bound, where it knows one, else found"), of_axis!(to),
         "Upper end of the domain along an axis."),
     key("cells.<axis>.count", Kind::Integer(2, MOST_CELLS), Rule("found by two coarse solves for `cells.accuracy`"), of_axis!(count),
-        "Number of cells along an axis. An even number puts a face in the middle."),
+        "Number of cells along an axis; `<axis> = 60` in `[cells]` is short for it. An even number puts a face in the middle."),
     key("cells.<axis>.modes", Kind::Count(2, MOST_MODES as i128), Rule("`auto` where the model marks the axis and `count` is not given"), of_axis!(modes),
         "Number of modes that carry the density along the axis of an internal state without noise (one with bounds, or one that relaxes linearly), or of coloured noise, in place of cells, by the generator; other methods use `count`. `auto` finds how many what is watched needs."),
     key("cells.<axis>.grade", Kind::Choice(automatic), Rule("cells of equal width"), of_axis!(grade),

@@ -128,3 +128,12 @@ fn the_resolved_file_holds_every_key() {
         assert!(found, "{named} not in\n{text}");
     }
 }
+
+#[test]
+fn a_number_for_an_axis_is_its_count() {
+    let [short, long] =
+        ["cells.y=12", "cells.y={count=12}"].map(|set| parse(FILE, &[set]).unwrap());
+    assert_eq!(short.to_toml(), long.to_toml());
+    let words = parse(FILE, &["cells.y=1"]).unwrap_err().to_string();
+    assert!(words.contains("`cells.y.count` cannot be `1`"), "{words}");
+}
