@@ -38,7 +38,7 @@ impl Chain {
             found.iter_mut().for_each(|value| *value -= mean);
             found
         };
-        Krylov::new(self, answer, [&[], starts, &[]], vectors)
+        Krylov::new(self, answer, [starts, &[], &[]], vectors)
     }
 }
 
@@ -46,7 +46,7 @@ impl AbsorbingChain<'_> {
     /// From functions that are zero where the process ends, by so many vectors each.
     pub(crate) fn krylov(&self, starts: &[Vec<f64>], vectors: usize) -> Krylov {
         let answer = |function: &[f64]| self.solve(&self.chain.weighted(function), |_| 0.0);
-        Krylov::new(self.chain, answer, [&[], starts, &[]], vectors)
+        Krylov::new(self.chain, answer, [starts, &[], &[]], vectors)
     }
 
     /// From a function that is zero where the process ends, by so many vectors, and by (s - L)⁻¹ of it and (s - L)⁻² of
@@ -58,7 +58,7 @@ impl AbsorbingChain<'_> {
         let once: Vec<Vec<f64>> = rates.iter().map(|&rate| at(rate, start)).collect();
         let pairs = rates.iter().zip(&once);
         let twice: Vec<Vec<f64>> = pairs.map(|(&rate, once)| at(rate, once)).collect();
-        let starts = [once.as_slice(), &[start.to_vec()], twice.as_slice()];
+        let starts = [&[start.to_vec()], once.as_slice(), twice.as_slice()];
         Krylov::new(self.chain, |function| at(0.0, function), starts, vectors)
     }
 }
@@ -67,7 +67,7 @@ impl Krylov {
     fn new(
         chain: &Chain,
         answer: impl Fn(&[f64]) -> Vec<f64>,
-        [first, starts, last]: [&[Vec<f64>]; 3],
+        [starts, between, last]: [&[Vec<f64>]; 3],
         vectors: usize,
     ) -> Self {
         let mut basis: Vec<Vec<f64>> = Vec::new();
@@ -84,9 +84,10 @@ impl Krylov {
             }
             more
         };
-        take(first);
-        let mut next: Vec<Vec<f64>> = starts.to_vec();
-        for _ in 0..vectors {
+        // What is made of a start may hold it but for rounding, and its own powers are to go on from it.
+        let mut next = take(starts);
+        take(between);
+        for _ in 1..vectors {
             next = take(&next);
         }
         take(last);
