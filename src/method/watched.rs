@@ -237,6 +237,12 @@ impl Maps {
         averaged.collect()
     }
 
+    /// Moments of the quantities that are averaged, without errors.
+    pub(super) fn plain_moments(&self, masses: &[f64]) -> Result<Vec<Moments>, MethodError> {
+        let all = self.averaged.iter();
+        all.map(|map| Ok(map.moments.of(masses)?)).collect()
+    }
+
     /// Moments of the axes, which are known, and of the quantities that are averaged, with standard errors from
     /// replicates of sampled masses.
     pub(super) fn all_sampled_moments(

@@ -49,6 +49,7 @@
 //! | probabilities at times, and quantiles | `survival.rs` |
 //! | numbers with errors | `timed.rs` |
 //! | the same on one axis, from a chain | `on_line.rs` |
+//! | places and rates for a start beside a border there | `near_border.rs` |
 //! | what is handed from value to value | `memory.rs` |
 //! | numbers as fields over the start | `field.rs` |
 //! | the same beside a border | `rim.rs` |
@@ -64,6 +65,7 @@ mod exits;
 mod field;
 mod lasting;
 mod memory;
+mod near_border;
 mod on_line;
 mod on_way;
 mod rate;

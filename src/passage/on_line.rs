@@ -1,7 +1,7 @@
 //! First passages on one axis, from the chain that its motion is (`generator::chain`): a line with a place on every
 //! border, on which mean times are exact but for the quadrature.
 
-use super::{Passage, PassageError, Start, Timed, WithError};
+use super::{Passage, PassageError, Start, Timed, WithError, near_border};
 use crate::generator::{Chain, MESH_DEPTH, MESH_PLACES, Mesh, Reach, Reduced};
 use crate::numerics::{bisected, narrowed};
 use crate::stationary::generator::AbsorbingWork;
@@ -38,7 +38,9 @@ impl Bordered {
                 }
             }
         }
-        let line = reach.mesh(MESH_PLACES, MESH_DEPTH, &breaks)?;
+        let beside = |&start: &f64| near_border::places(start, &breaks, &rough.places);
+        let finer: Vec<f64> = more.iter().flat_map(beside).collect();
+        let line = reach.finer_mesh(MESH_PLACES, MESH_DEPTH, &breaks, &finer)?;
         Some(Self { line })
     }
 
@@ -221,7 +223,15 @@ impl OnGrid<'_> {
             .ends
             .iter()
             .map(|is_end| if *is_end { 0.0 } else { 1.0 });
-        let krylov = ending.krylov(&[ones.collect()], VECTORS);
+        let ones: Vec<f64> = ones.collect();
+        let slow = ending.krylov(std::slice::from_ref(&ones), VECTORS);
+        let known = slow.reduced(1.0, false).rates;
+        let known = known.get(known.len() / 2).copied().unwrap_or(0.0);
+        let rates = near_border::rates(known, self.shortest(passage, mean));
+        let krylov = match rates.is_empty() {
+            true => slow,
+            false => ending.krylov_with(&ones, VECTORS, &rates),
+        };
         let [all, fewer] =
             [1.0, FEWER].map(|share| Survival::new(self, &krylov.reduced(share, true)));
         let both = |of: &dyn Fn(&Survival) -> f64| {
@@ -247,6 +257,15 @@ impl OnGrid<'_> {
         let quantiles = passage.quantiles.iter();
         numbers.extend(quantiles.map(|&share| both(&|model| model.time(1.0 - share, mean))));
         numbers
+    }
+
+    /// The shortest time of which anything is asked.
+    fn shortest(&self, passage: &Passage, mean: f64) -> f64 {
+        let least = passage.times.iter().copied().fold(mean, f64::min);
+        match passage.quantiles.is_empty() {
+            true => least,
+            false => least.min(near_border::soonest(self.chain, self.ends, self.start)),
+        }
     }
 }
 

@@ -141,6 +141,8 @@ impl Products {
     /// The model of so many vectors of either space; `None` where the two have nothing in common.
     pub(super) fn model(&self, size: usize) -> Option<ReducedModel> {
         let size = size.min(self.overlaps.len()).min(self.images[0].len());
+        // Where no vector was found there is none of which values could be looked for.
+        (size > 0).then_some(())?;
         let table =
             |rows: &[Vec<f64>]| DMatrix::from_fn(size, size, |row, column| rows[row][column]);
         let overlaps = table(&self.overlaps);
@@ -293,5 +295,15 @@ impl ReducedModel {
             columns: self.columns.map(|one| Complex::new(one, 0.0)) * right,
             rows: self.rows.transpose().map(|one| Complex::new(one, 0.0)) * left,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Products;
+
+    #[test]
+    fn of_no_vectors_there_is_no_model() {
+        assert!(Products::default().model(8).is_none());
     }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::common::sweeps::{rows, solved, swept};
+use crate::common::sweeps::{measure, rows, solved, swept};
 use pbif::continuation::{BifurcationStatus, Finding};
 
 /// θ' = -sin u - b sin 2u, u = θ - s, with white noise of intensity 2 D: p ∝ exp((cos u + (b/2) cos 2u)/D).
@@ -187,4 +187,32 @@ fn as_many_harmonics_of_two_angles_are_chosen_as_their_density_needs() {
         split.value,
         split.error
     );
+}
+
+/// ⟨cos φ⟩ of p ∝ exp(cos(φ)/D).
+fn of_gibbs(d: f64) -> f64 {
+    let places = (0..2000).map(|place| (TAU * f64::from(place) / 2000.0).cos());
+    let (whole, first) = places.fold((0.0, 0.0), |(whole, first), cosine| {
+        let weight = ((cosine - 1.0) / d).exp();
+        (whole + weight, first + weight * cosine)
+    });
+    first / whole
+}
+
+#[test]
+fn means_of_formulas_of_an_angle_have_an_error_of_its_harmonics() {
+    for (d, modes) in [(0.1, 8), (0.2, 6), (0.05, 12), (0.3, 6), (0.5, 5), (1.0, 4)] {
+        let text = format!(
+            "[system.equations]\nphi = \"-w sin(phi)\"\n[system.noise]\nphi = \"sqrt(2*{d})\"\n\
+             [system.bounds]\nphi = \"periodic\"\n[sweep]\nparameter = \"w\"\nfrom = 0.9\nto = 1.0\n\
+             points = 2\n[cells]\nphi = {{ modes = {modes} }}\n[watch]\nc = \"cos(phi)\"\n"
+        );
+        let (_, solution) = solved(&text, "", None);
+        let (value, error) = measure(&solution, "mean_c");
+        let exact = of_gibbs(d);
+        assert!(
+            (value - exact).abs() <= error + 1e-12,
+            "{d} {modes}: {value} ± {error:e}, {exact}"
+        );
+    }
 }

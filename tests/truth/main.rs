@@ -20,6 +20,7 @@ mod long_passages;
 mod means_of_formulas;
 mod moving_jump;
 mod natural_ends;
+mod near_borders;
 mod one_axis;
 mod passage_fields;
 mod passage_starts;

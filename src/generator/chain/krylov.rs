@@ -38,7 +38,7 @@ impl Chain {
             found.iter_mut().for_each(|value| *value -= mean);
             found
         };
-        Krylov::new(self, answer, starts, vectors)
+        Krylov::new(self, answer, [starts, &[], &[]], vectors)
     }
 }
 
@@ -46,7 +46,20 @@ impl AbsorbingChain<'_> {
     /// From functions that are zero where the process ends, by so many vectors each.
     pub(crate) fn krylov(&self, starts: &[Vec<f64>], vectors: usize) -> Krylov {
         let answer = |function: &[f64]| self.solve(&self.chain.weighted(function), |_| 0.0);
-        Krylov::new(self.chain, answer, starts, vectors)
+        Krylov::new(self.chain, answer, [starts, &[], &[]], vectors)
+    }
+
+    /// From a function that is zero where the process ends, by so many vectors, and by (s - L)⁻¹ of it and (s - L)⁻² of
+    /// it at some rates s: what changes as fast as that is in them. The latter are the last.
+    pub(crate) fn krylov_with(&self, start: &[f64], vectors: usize, rates: &[f64]) -> Krylov {
+        let at = |rate: f64, function: &[f64]| {
+            self.solve_at(rate, &self.chain.weighted(function), |_| 0.0)
+        };
+        let once: Vec<Vec<f64>> = rates.iter().map(|&rate| at(rate, start)).collect();
+        let pairs = rates.iter().zip(&once);
+        let twice: Vec<Vec<f64>> = pairs.map(|(&rate, once)| at(rate, once)).collect();
+        let starts = [&[start.to_vec()], once.as_slice(), twice.as_slice()];
+        Krylov::new(self.chain, |function| at(0.0, function), starts, vectors)
     }
 }
 
@@ -54,24 +67,30 @@ impl Krylov {
     fn new(
         chain: &Chain,
         answer: impl Fn(&[f64]) -> Vec<f64>,
-        starts: &[Vec<f64>],
+        [starts, between, last]: [&[Vec<f64>]; 3],
         vectors: usize,
     ) -> Self {
         let mut basis: Vec<Vec<f64>> = Vec::new();
         let mut images: Vec<Vec<f64>> = Vec::new();
-        let mut next: Vec<Vec<f64>> = starts.to_vec();
-        for _ in 0..vectors {
+        let mut take = |all: &[Vec<f64>]| {
             let mut more = Vec::new();
-            for vector in next {
-                if let Some(vector) = beside(chain, &basis, vector) {
+            for vector in all {
+                if let Some(vector) = beside(chain, &basis, vector.clone()) {
                     let image = answer(&vector);
                     more.push(image.clone());
                     images.push(image);
                     basis.push(vector);
                 }
             }
-            next = more;
+            more
+        };
+        // What is made of a start may hold it but for rounding, and its own powers are to go on from it.
+        let mut next = take(starts);
+        take(between);
+        for _ in 1..vectors {
+            next = take(&next);
         }
+        take(last);
         let weighted: Vec<Vec<f64>> = basis.iter().map(|vector| chain.weighted(vector)).collect();
         let overlap = |row: usize, column: usize| Chain::over(&weighted[row], &images[column]);
         let size = basis.len();

@@ -55,12 +55,24 @@ impl Reach<'_> {
     /// The line with about so many places, to where the density is exp(-depth) of what it is at most, with places on
     /// all `breaks`; `None` where it has no end: the density rises beyond the range, or the equations end there.
     pub(crate) fn mesh(&self, count: usize, depth: f64, breaks: &[f64]) -> Option<Mesh> {
+        self.finer_mesh(count, depth, breaks, &[])
+    }
+
+    /// The same with some more places inside the range, which not every grid of the line has. Where there are such,
+    /// they and those that the line has by itself are among every other place.
+    pub(crate) fn finer_mesh(
+        &self,
+        count: usize,
+        depth: f64,
+        breaks: &[f64],
+        more: &[f64],
+    ) -> Option<Mesh> {
         let rule = Rule::new();
         let mut known: Vec<f64> = surfaces(self.system);
         known.extend_from_slice(breaks);
         known.sort_by(f64::total_cmp);
         known.dedup_by(|one, other| (*one - *other).abs() <= SAME * one.abs().max(other.abs()));
-        let (mut skeleton, mut reached) = self.within(&rule, &known, depth)?;
+        let (mut skeleton, mut reached) = self.within(&rule, (&known, more), depth)?;
         let top = skeleton.top();
         for (end, reached) in reached.iter_mut().enumerate() {
             if self.ends[end] == AxisEnd::Open {
@@ -70,12 +82,17 @@ impl Reach<'_> {
             }
         }
         skeleton.prune(top - depth.max(DEEPEST), &known, &reached);
-        let places = skeleton.divided(count);
+        let places = skeleton.divided(count, !more.is_empty());
         Mesh::new(self.system, rule, places, &known, reached)
     }
 
     /// Inside the range.
-    fn within(&self, rule: &Rule, known: &[f64], depth: f64) -> Option<(Skeleton, [Reached; 2])> {
+    fn within(
+        &self,
+        rule: &Rule,
+        (known, more): (&[f64], &[f64]),
+        depth: f64,
+    ) -> Option<(Skeleton, [Reached; 2])> {
         let parts = INTERVALS.div_ceil(self.axis.count());
         let mut places = Vec::new();
         for edges in self.axis.edges().windows(2) {
@@ -83,6 +100,7 @@ impl Reach<'_> {
             places.extend((0..parts).map(part));
         }
         places.push(self.axis.to());
+        insert(&mut places, more);
         insert(&mut places, known);
         let mut reached = [Reached {
             natural: None,
@@ -243,8 +261,9 @@ impl Skeleton {
         self.panels.drain(..first);
     }
 
-    /// The places with more of them between.
-    fn divided(&self, count: usize) -> Vec<f64> {
+    /// The places with more of them between; an odd number where every other place is to hold all of the former, so
+    /// that what both lines are off by goes with the square of the distance place by place.
+    fn divided(&self, count: usize, is_nested: bool) -> Vec<f64> {
         let levels = self.levels();
         // The density over ∫ dx/b.
         let log_densities: Vec<f64> = (self.panels.iter().zip(levels.windows(2)))
@@ -269,6 +288,7 @@ impl Skeleton {
             let share = panel.spread * (1.0 / whole + weights[index] / weighted);
             let wanted = (half * share).max(panel.variation / LARGEST_RISE);
             let parts = wanted.ceil().clamp(1.0, count as f64) as usize;
+            let parts = parts + usize::from(is_nested && !parts.is_multiple_of(2));
             let (from, to) = (self.places[index], self.places[index + 1]);
             let part = |number| from + (to - from) * number as f64 / parts as f64;
             places.extend((0..parts).map(part));

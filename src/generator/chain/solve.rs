@@ -34,6 +34,16 @@ impl AbsorbingChain<'_> {
     /// f with L f = -g, of the loads ∫ φ g p, and with these values at the places where it ends. Infinite, or not a
     /// number, where no such place is reached.
     pub(crate) fn solve(&self, load: &[f64], at_ends: impl Fn(usize) -> f64) -> Vec<f64> {
+        self.solve_at(0.0, load, at_ends)
+    }
+
+    /// f with (L - s) f = -g at a rate s of zero or more, likewise: processes end at that rate wherever they are.
+    pub(super) fn solve_at(
+        &self,
+        rate: f64,
+        load: &[f64],
+        at_ends: impl Fn(usize) -> f64,
+    ) -> Vec<f64> {
         let conductances = &self.chain.conductances;
         let count = self.ends.len();
         // What leaves each place but for the way up, and what it gains with what comes from below.
@@ -46,7 +56,8 @@ impl AbsorbingChain<'_> {
                 gain_below = at_ends(place) * leak_below;
                 continue;
             }
-            let (mut leak, mut gain) = (leak_below, load[place] + gain_below);
+            let own = rate * self.chain.masses[place];
+            let (mut leak, mut gain) = (leak_below + own, load[place] + gain_below);
             match way {
                 Some(way) if self.ends[place + 1] => {
                     leak += way;

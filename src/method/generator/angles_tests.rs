@@ -248,3 +248,30 @@ fn a_free_rotor_has_einsteins_diffusion_and_terminal_velocity() {
         "{s} {s_error:e}"
     );
 }
+
+#[test]
+fn means_of_a_rotor_with_few_harmonics_have_an_error_of_these() {
+    let model = TypedModel::new("rotor", "Rotor", ["theta", "y"])
+        .with_equation("theta", "y")
+        .with_equation("y", "-0.5 y - sin(theta) + A")
+        .with_noise("y", ["sqrt(0.6)"])
+        .with_angle("theta", TAU)
+        .with_parameters(["A"])
+        .build()
+        .unwrap();
+    // The mean of the velocity is that of the angle.
+    for (torque, velocity) in [(0.5, 0.328_288_1), (1.0, 1.694_755_1)] {
+        for harmonics in [6, 8] {
+            let axes = vec![
+                Axis::fourier(-PI, PI, harmonics).unwrap(),
+                Axis::uniform(-5.5, 7.5, 90).unwrap(),
+            ];
+            let (_, report) = solved(&model, torque, axes);
+            let (mean, error) = known(&report, "mean_y");
+            assert!(
+                (mean - velocity).abs() < error + 1e-7,
+                "{torque}, {harmonics}: {mean} {error:e}"
+            );
+        }
+    }
+}

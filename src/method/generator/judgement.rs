@@ -136,7 +136,8 @@ impl GeneratorSession {
                 closed: &self.source.closed_ends,
             },
         )?;
-        let moments = [of_axes, of_quantities, at_phases].concat();
+        let of_states = self.with_last_harmonics(solved, [of_axes, of_quantities].concat())?;
+        let moments = [of_states, at_phases].concat();
         reporter.moments(&moments);
         reporter
             .report

@@ -5,19 +5,27 @@
 //! is v + δ, where δ answers to what w no longer feeds into the modes before it: Q δ = P Q w, P the projection on
 //! these. The factors of the steady state that is there serve for it.
 //!
-//! Only axes of Hermite modes, of coloured noise, are asked: along friction states and phases the answer takes a fifth
-//! of a sweep's time, and the modes of friction states are judged by what the last of them carry.
+//! Axes of Hermite modes, of coloured noise, are asked for what is watched, and harmonics of angles for means and
+//! deviations. Along friction states and phases the answer takes a fifth of a sweep's time, and the modes of friction
+//! states are judged by what the last of them carry.
 
 use super::session::{GeneratorSession, PointSolve};
 use super::truncation::OF_AN_ANSWER;
-use crate::density::EstimatedDensity;
-use crate::generator::cell_masses;
+use super::unknowns::moments_of;
+use crate::density::{EstimatedDensity, EstimatedMoments, Moments};
+use crate::generator::{cell_masses, summed_to_walls};
 use crate::method::MethodError;
 use crate::method::watched::differences;
 use crate::space::{Axis, CellSpace, Series};
 
 /// One mode of so many is left out, and at least one of each parity. What a last one alone carries passes through zero.
 const MODES_A_MODE_LEFT_OUT: usize = 5;
+
+/// Times what the last harmonics change of a mean: those that are not there may do as much.
+const SAFETY: f64 = 2.0;
+
+/// Axes whose last modes are left out, one flag an axis.
+type Asked = Vec<bool>;
 
 impl GeneratorSession {
     /// Adds to densities of solved masses what the last modes of all axes of coloured noise change in them.
@@ -28,21 +36,10 @@ impl GeneratorSession {
         densities: &mut [EstimatedDensity],
     ) -> Result<(), MethodError> {
         let space = self.source.problem.space().clone();
-        let Some(second) = &solved.second else {
+        let asked = space.axes().iter().map(is_coloured_noise).collect();
+        let Some(there) = self.by_fewer_modes(solved, &asked)? else {
             return Ok(());
         };
-        if !space.axes().iter().any(is_coloured_noise) {
-            return Ok(());
-        }
-        let unknowns = &solved.steady.mass;
-        let last = differences(&of_first_modes(&space, unknowns), unknowns);
-        // The schemes differ along the cells alone, in what is small against the masses as the last modes are.
-        let fed = of_first_modes(&space, &second.product(&last));
-        let fed: Vec<f64> = fed.iter().map(|rate| -rate).collect();
-        let answer = self.solver.response(&fed, unknowns, None, OF_AN_ANSWER)?;
-        let fewer = of_first_modes(&space, &differences(&last, &answer));
-        let fewer = differences(&last, &fewer);
-        let there: Vec<f64> = unknowns.iter().zip(&fewer).map(|(u, du)| u + du).collect();
         let there = cell_masses(solved.system.as_ref(), &space, &there);
         let maps = self.source.maps(solved.value)?;
         let changes = maps.changes(&self.source.problem, &differences(masses, &there))?;
@@ -51,16 +48,75 @@ impl GeneratorSession {
         }
         Ok(())
     }
+
+    /// Adds to moments of axes and, behind them, of the quantities that are averaged what the last harmonics of angles
+    /// change in them; in a check nothing.
+    pub(super) fn with_last_harmonics(
+        &mut self,
+        solved: &PointSolve,
+        moments: Vec<EstimatedMoments>,
+    ) -> Result<Vec<EstimatedMoments>, MethodError> {
+        let problem = self.source.problem.clone();
+        let space = problem.space();
+        let mut asked = vec![false; space.dimension()];
+        for (axis, _) in problem.family().angles() {
+            asked[axis] = true;
+        }
+        let Some(there) = self.by_fewer_modes(solved, &asked)? else {
+            return Ok(moments);
+        };
+        let system = solved.system.as_ref();
+        let masses = cell_masses(system, space, &there);
+        let of_quantities = self.source.maps(solved.value)?.plain_moments(&masses)?;
+        let of_axes = moments_of(space, &summed_to_walls(system, space, &there));
+        let others = of_axes.into_iter().chain(of_quantities);
+        let pairs = moments.into_iter().zip(others);
+        let with = |(own, other): (EstimatedMoments, Moments)| {
+            let change = |other: f64, own: f64| SAFETY * (other - own).abs();
+            own.with(Moments {
+                mean: change(other.mean, own.moments.mean),
+                standard_deviation: change(
+                    other.standard_deviation,
+                    own.moments.standard_deviation,
+                ),
+            })
+        };
+        Ok(pairs.map(with).collect())
+    }
+
+    /// The unknowns as they would be without the last modes of these axes; `None` where there are none such, or
+    /// nothing is to be judged.
+    fn by_fewer_modes(
+        &mut self,
+        solved: &PointSolve,
+        asked: &Asked,
+    ) -> Result<Option<Vec<f64>>, MethodError> {
+        let space = self.source.problem.space().clone();
+        let Some(second) = solved.second.as_ref().filter(|_| asked.contains(&true)) else {
+            return Ok(None);
+        };
+        let unknowns = &solved.steady.mass;
+        let last = differences(&of_first_modes(&space, asked, unknowns), unknowns);
+        // The schemes differ along the cells alone, in what is small against the masses as the last modes are.
+        let fed = of_first_modes(&space, asked, &second.product(&last));
+        let fed: Vec<f64> = fed.iter().map(|rate| -rate).collect();
+        let answer = self.solver.response(&fed, unknowns, None, OF_AN_ANSWER)?;
+        let fewer = of_first_modes(&space, asked, &differences(&last, &answer));
+        let fewer = differences(&last, &fewer);
+        Ok(Some(
+            unknowns.iter().zip(&fewer).map(|(u, du)| u + du).collect(),
+        ))
+    }
 }
 
-/// What all modes but the last ones of each axis of coloured noise carry of masses at the nodes.
-fn of_first_modes(space: &CellSpace, masses: &[f64]) -> Vec<f64> {
+/// What all modes but the last ones of each of these axes carry of masses at the nodes.
+fn of_first_modes(space: &CellSpace, asked: &Asked, masses: &[f64]) -> Vec<f64> {
     let mut first = masses.to_vec();
     let mut stride = 1;
-    for axis in space.axes().iter().rev() {
+    for (axis, asked) in space.axes().iter().zip(asked).rev() {
         let count = axis.count();
-        if is_coloured_noise(axis) {
-            let owed = axis.beyond_hermite_modes(kept(axis));
+        if *asked {
+            let owed = axis.beyond_modes(kept(axis));
             for block in first.chunks_exact_mut(stride * count) {
                 for inner in 0..stride {
                     let line: Vec<f64> =
@@ -81,8 +137,13 @@ fn is_coloured_noise(axis: &Axis) -> bool {
     matches!(axis.series(), Some(Series::Hermite { .. }))
 }
 
-/// Modes that are kept of an axis of modes.
+/// Modes that are kept of an axis of modes, or harmonics.
 fn kept(axis: &Axis) -> usize {
-    let left_out = axis.mode_number() / MODES_A_MODE_LEFT_OUT;
-    axis.count().saturating_sub(left_out.max(2)).max(1)
+    let number = axis.mode_number();
+    let all = match axis.is_closed() {
+        true => number,
+        false => axis.count(),
+    };
+    all.saturating_sub((number / MODES_A_MODE_LEFT_OUT).max(2))
+        .max(1)
 }

@@ -131,7 +131,7 @@ fn imbalances(
 }
 
 /// The moments alone.
-fn moments_of(space: &CellSpace, unknowns: &[f64]) -> Vec<Moments> {
+pub(super) fn moments_of(space: &CellSpace, unknowns: &[f64]) -> Vec<Moments> {
     unknown_moments(space, unknowns)
         .into_iter()
         .map(|(mean, variance)| Moments {

@@ -150,12 +150,21 @@ impl Axis {
         self.series
     }
 
-    /// Of an axis of Hermite modes, what the masses at its nodes owe to the modes beyond the first `kept`: entry `node
-    /// · count + other` is what the mass at the other node adds. Of other axes nothing.
-    pub(crate) fn beyond_hermite_modes(&self, kept: usize) -> Vec<f64> {
+    /// Of an axis of Hermite modes or of harmonics, what the masses at its nodes owe to the modes beyond the first
+    /// `kept` (harmonics beyond that many): entry `node · count + other` is what the mass at the other node adds. Of
+    /// other axes nothing.
+    pub(crate) fn beyond_modes(&self, kept: usize) -> Vec<f64> {
         let count = self.count();
-        let Some(Series::Hermite { mean, deviation }) = self.series else {
-            return vec![0.0; count * count];
+        let (mean, deviation) = match self.series {
+            Some(Series::Hermite { mean, deviation }) => (mean, deviation),
+            Some(Series::Fourier) => {
+                let turn = |at: usize| (at / count) as f64 - (at % count) as f64;
+                let owed = (0..count * count)
+                    .map(|at| turn(at) / count as f64)
+                    .map(|turn| cardinal(turn, self.mode_number()) - cardinal(turn, kept));
+                return owed.map(|owed| owed / count as f64).collect();
+            }
+            _ => return vec![0.0; count * count],
         };
         let values = |x: &f64| hermite_values(count, (x - mean) / deviation);
         let nodes: Vec<Vec<f64>> = self.nodes.iter().map(values).collect();
