@@ -8,16 +8,22 @@ use crate::space::nodes::place_of;
 pub(super) struct Lasting {
     space: CellSpace,
     density: Vec<f64>,
+    /// Whether the equations of the grid can be solved in single precision as well.
+    pub(super) is_far_from_singular: bool,
 }
 
 impl Lasting {
     /// From the unknowns of cells, density times local volume.
-    pub(super) fn new(space: CellSpace, unknowns: Vec<f64>) -> Self {
+    pub(super) fn new(space: CellSpace, unknowns: Vec<f64>, is_far_from_singular: bool) -> Self {
         let mut density = unknowns;
         for (cell, value) in density.iter_mut().enumerate() {
             *value /= space.volume(cell);
         }
-        Self { space, density }
+        Self {
+            space,
+            density,
+            is_far_from_singular,
+        }
     }
 
     /// The unknowns of the kept cells of another grid, linear between nodes.
@@ -73,7 +79,7 @@ mod tests {
         let one = |cell: usize| density(&space.node(cell)) * space.volume(cell);
         let unknowns: Vec<f64> = (0..space.n_cells()).map(one).collect();
         let kept = vec![true; space.n_cells()];
-        let lasting = Lasting::new(space.clone(), unknowns.clone());
+        let lasting = Lasting::new(space.clone(), unknowns.clone(), true);
         for (found, own) in lasting.on(&space, &kept).iter().zip(&unknowns) {
             assert!((found - own).abs() < 1e-14);
         }

@@ -40,11 +40,12 @@
 //! | cells, graded toward a barrier of an oscillator | `cells.rs` |
 //! | weights of a start | `start.rs` |
 //! | what is known of the steady state, and what its errors do | `density_start.rs` |
-//! | masses of a density in a region | `spread.rs` |
+//! | masses of a density in a region, over the cells of several grids | `spread.rs`, `masses.rs` |
 //! | interpolation on all points of a grid | `tensor.rs` |
-//! | numbers on one grid | `solve.rs` |
+//! | numbers on one grid | `solve.rs`, `moments.rs` |
 //! | shares of exits | `exits.rs` |
-//! | the rate, from the vectors of moments | `rate.rs` |
+//! | the rate, from the vectors of moments | `quasi_stationary.rs` |
+//! | its density, by vectors that are made for it | `rate.rs` |
 //! | its density, from one grid to another | `lasting.rs` |
 //! | probabilities at times, and quantiles | `survival.rs` |
 //! | numbers with errors | `timed.rs` |
@@ -64,10 +65,13 @@ mod density_start;
 mod exits;
 mod field;
 mod lasting;
+mod masses;
 mod memory;
+mod moments;
 mod near_border;
 mod on_line;
 mod on_way;
+mod quasi_stationary;
 mod rate;
 mod reactive;
 mod rim;

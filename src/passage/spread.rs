@@ -1,5 +1,4 @@
-//! A start that is spread as a density: its mass in a region, brought from the cells of the density to those of a
-//! passage.
+//! The mass of a density in a region, at points between the nodes of its cells.
 //!
 //! Cells that the region's border cuts are integrated up to it: along the axis that is steepest across the border to
 //! the place where each line crosses it, over lines that lie close to each other.
@@ -8,73 +7,31 @@ use super::start::{AtCoordinate as _, add_state};
 use super::tensor::{gathered, scattered, whole};
 use crate::MAX_DIMENSION;
 use crate::space::CellSpace;
-use crate::space::nodes::{AxisWeights, NODES, about, along, each};
+use crate::space::nodes::{AxisWeights, about, along, each};
 
 /// Gauss points of an interval, as shares of its length.
 const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
 /// Lines along another axis of a cell that a border cuts; half as many where nodes are fewer.
-const LINES: usize = 8;
+pub(super) const LINES: usize = 8;
 
 /// Steps by which a crossing is narrowed within a cell, and the width at which it is known.
 const NARROWING: usize = 100;
 const NARROW: f64 = 1e-13;
 
-/// Most points at which a density is known at once; cells are taken one by one where there are more.
-const MOST_POINTS: usize = 1 << 22;
-
-/// Spreads a density (at the nodes of `cells`, times local volumes), as far as it lies where `region` is negative, over
-/// the kept nodes of other cells, with so many nodes an axis about each point; gives the mass that was spread. `levels`
-/// are those of the region at the nodes.
-pub(super) fn add_density(
-    target: (&CellSpace, &[bool]),
-    (cells, unknowns): (&CellSpace, &[f64]),
-    (region, levels): (impl Fn(&[f64]) -> f64, &[f64]),
-    nodes: usize,
-    weights: &mut [f64],
-) -> f64 {
-    let spread = Spread {
-        cells,
-        unknowns,
-        region,
-        lines: if nodes == NODES { LINES } else { LINES / 2 },
-        nodes,
-    };
-    let mut is_whole = vec![false; cells.n_cells()];
-    let mut sum = 0.0;
-    let is_near_border = spread.near_border(levels);
-    for (cell, &level) in levels.iter().enumerate() {
-        let is_inside = level < 0.0;
-        let parts = is_near_border[cell].then(|| spread.cut(cell));
-        match parts {
-            Some(Some(points)) => sum += spread.add(points, target, weights),
-            Some(None) => is_whole[cell] = true,
-            None => is_whole[cell] = is_inside,
-        }
-    }
-    let points: usize = spread.points().iter().map(Vec::len).product();
-    if points <= MOST_POINTS {
-        return sum + spread.add_whole(&is_whole, target, weights);
-    }
-    for cell in (0..is_whole.len()).filter(|&cell| is_whole[cell]) {
-        sum += spread.add(spread.whole(cell), target, weights);
-    }
-    sum
-}
-
 /// Cells with a region.
-struct Spread<'a, R> {
-    cells: &'a CellSpace,
+pub(super) struct Spread<'a, R> {
+    pub(super) cells: &'a CellSpace,
     /// A density at the nodes, times local volumes.
-    unknowns: &'a [f64],
-    region: R,
-    lines: usize,
+    pub(super) unknowns: &'a [f64],
+    pub(super) region: R,
+    pub(super) lines: usize,
     /// Nodes of a polynomial along an axis.
-    nodes: usize,
+    pub(super) nodes: usize,
 }
 
-/// A point in cell coordinates, and the share of a cell that it stands for.
-type Point = (Vec<f64>, f64);
+/// A point in cell coordinates, and the share of a cell that it stands for or the mass there.
+pub(super) type Point = (Vec<f64>, f64);
 
 impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
     fn state(&self, places: &[f64]) -> [f64; MAX_DIMENSION] {
@@ -96,16 +53,10 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
             .collect()
     }
 
-    /// Adds the masses of points one by one; gives their sum.
-    fn add(
-        &self,
-        points: Vec<Point>,
-        (space, kept): (&CellSpace, &[bool]),
-        weights: &mut [f64],
-    ) -> f64 {
+    /// The masses of points, of their shares of a cell.
+    pub(super) fn masses(&self, points: Vec<Point>) -> impl Iterator<Item = Point> {
         let shape = self.cells.shape();
-        let mut sum = 0.0;
-        for (places, share) in points {
+        points.into_iter().map(move |(places, share)| {
             let product: Vec<AxisWeights> = places
                 .iter()
                 .zip(&shape)
@@ -115,10 +66,22 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
             each(self.cells, &product, |cell, weight| {
                 value += weight * self.unknowns[cell];
             });
-            let mass = value * share;
-            let state = self.state(&places);
-            let state = (&state[..self.cells.dimension()], mass);
-            if mass != 0.0 && add_state(space, kept, state, self.nodes, weights) {
+            (places, value * share)
+        })
+    }
+
+    /// Adds masses at points one by one; gives their sum.
+    pub(super) fn add(
+        &self,
+        points: &[Point],
+        (space, kept): (&CellSpace, &[bool]),
+        weights: &mut [f64],
+    ) -> f64 {
+        let mut sum = 0.0;
+        for (places, mass) in points {
+            let state = self.state(places);
+            let state = (&state[..self.cells.dimension()], *mass);
+            if *mass != 0.0 && add_state(space, kept, state, self.nodes, weights) {
                 sum += mass;
             }
         }
@@ -126,7 +89,7 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
     }
 
     /// Places of the points of whole cells along each axis.
-    fn points(&self) -> Vec<Vec<f64>> {
+    pub(super) fn points(&self) -> Vec<Vec<f64>> {
         let of_axis = |axis: usize| {
             let cells = 0..self.cells.axes()[axis].count();
             let shares = self.shares(axis, &GAUSS);
@@ -137,26 +100,43 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
         (0..self.cells.dimension()).map(of_axis).collect()
     }
 
-    /// Adds the masses of whole cells, all points at once but those beside the target; gives their sum.
-    fn add_whole(
-        &self,
-        is_whole: &[bool],
-        (space, kept): (&CellSpace, &[bool]),
-        weights: &mut [f64],
-    ) -> f64 {
-        let (cells, shape) = (self.cells, self.cells.shape());
-        let points = self.points();
-        let counts: Vec<usize> = points.iter().map(Vec::len).collect();
-        let all = || points.iter().zip(cells.axes()).zip(space.axes());
-        let from: Vec<Vec<AxisWeights>> = all()
-            .map(|((points, own), _)| {
+    /// The masses at the points of whole cells, all at once.
+    pub(super) fn masses_of_whole(&self, points: &[Vec<f64>], is_whole: &[bool]) -> Vec<f64> {
+        let shape = self.cells.shape();
+        let all = points.iter().zip(&shape);
+        let from: Vec<Vec<AxisWeights>> = all
+            .map(|(points, &count)| {
                 let points = points.iter();
                 points
-                    .map(|&place| along(own.count(), place, 0, self.nodes))
+                    .map(|&place| along(count, place, 0, self.nodes))
                     .collect()
             })
             .collect();
-        let to: Vec<Vec<AxisWeights>> = all()
+        let mut masses = gathered(self.unknowns, &shape, &from);
+        let share = is_whole.len() as f64 / masses.len() as f64;
+        for (number, mass) in masses.iter_mut().enumerate() {
+            let (mut rest, mut cell, mut stride) = (number, 0, 1);
+            for axis in (0..shape.len()).rev() {
+                let count = points[axis].len();
+                cell += rest % count * shape[axis] / count * stride;
+                rest /= count;
+                stride *= shape[axis];
+            }
+            *mass *= if is_whole[cell] { share } else { 0.0 };
+        }
+        masses
+    }
+
+    /// Adds masses at all combinations of places, all points at once but those beside the target; gives their sum.
+    pub(super) fn add_even(
+        &self,
+        points: &[Vec<f64>],
+        masses: &[f64],
+        (space, kept): (&CellSpace, &[bool]),
+        weights: &mut [f64],
+    ) -> f64 {
+        let all = points.iter().zip(self.cells.axes()).zip(space.axes());
+        let to: Vec<Vec<AxisWeights>> = all
             .map(|((points, own), other)| {
                 let points = points.iter();
                 points
@@ -164,42 +144,30 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
                     .collect()
             })
             .collect();
-        let mut masses = gathered(self.unknowns, &shape, &from);
         let reaches = whole(kept, &space.shape(), &to);
-        let share: f64 = shape
-            .iter()
-            .zip(&counts)
-            .map(|(&cells, &points)| cells as f64 / points as f64)
-            .product();
-        let (mut sum, mut aside) = (0.0, Vec::new());
+        let (mut masses, mut aside) = (masses.to_vec(), Vec::new());
         for (number, mass) in masses.iter_mut().enumerate() {
-            let (mut rest, mut cell, mut stride) = (number, 0, 1);
-            let mut places = [0.0; MAX_DIMENSION];
-            for axis in (0..counts.len()).rev() {
-                let at = rest % counts[axis];
-                rest /= counts[axis];
-                places[axis] = points[axis][at];
-                cell += at * shape[axis] / counts[axis] * stride;
-                stride *= shape[axis];
-            }
-            *mass *= if is_whole[cell] && reaches[number] {
-                share
-            } else {
-                0.0
-            };
-            sum += *mass;
-            if is_whole[cell] && !reaches[number] {
-                aside.push((places[..counts.len()].to_vec(), share));
+            if *mass != 0.0 && !reaches[number] {
+                let mut rest = number;
+                let places = points.iter().rev().map(|points| {
+                    let place = points[rest % points.len()];
+                    rest /= points.len();
+                    place
+                });
+                let mut places: Vec<f64> = places.collect();
+                places.reverse();
+                aside.push((places, std::mem::take(mass)));
             }
         }
+        let sum: f64 = masses.iter().sum();
         let spread = scattered(&masses, &space.shape(), &to);
         let pairs = weights.iter_mut().zip(spread);
         pairs.for_each(|(weight, mass)| *weight += mass);
-        sum + self.add(aside, (space, kept), weights)
+        sum + self.add(&aside, (space, kept), weights)
     }
 
     /// Of each cell, whether it and one of those around it, corners among them, are on both sides of the border.
-    fn near_border(&self, levels: &[f64]) -> Vec<bool> {
+    pub(super) fn near_border(&self, levels: &[f64]) -> Vec<bool> {
         // What lies on either side within one cell along every axis, spread axis by axis.
         let mut sides: Vec<[bool; 2]> = levels
             .iter()
@@ -228,7 +196,7 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
     }
 
     /// Points of a cell that lies in the region.
-    fn whole(&self, cell: usize) -> Vec<Point> {
+    pub(super) fn whole(&self, cell: usize) -> Vec<Point> {
         let corner = self.corner(cell);
         let shares = |axis: usize| self.shares(axis, &GAUSS);
         product(&corner, shares)
@@ -243,7 +211,7 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
     }
 
     /// Points of a cell that the border may cut; `None` where all of it lies in the region.
-    fn cut(&self, cell: usize) -> Option<Vec<Point>> {
+    pub(super) fn cut(&self, cell: usize) -> Option<Vec<Point>> {
         let corner = self.corner(cell);
         let middle: Vec<f64> = corner.iter().map(|place| place + 0.5).collect();
         let change = |axis: usize| {

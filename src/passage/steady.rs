@@ -1,7 +1,7 @@
 //! A steady state on the cells of a sweep, between their nodes, and its mass in a region.
 
 use super::field::greatest_beside;
-use super::spread::add_density;
+use super::masses::add_density;
 use super::start::at_state;
 use super::timed::WithError;
 use super::{KnownDensity, PassageError};

@@ -52,6 +52,9 @@ pub(super) fn scattered(masses: &[f64], shape: &[usize], axes: &[Vec<AxisWeights
 
 /// At the points of a grid, whether all nodes that have weights there are kept.
 pub(super) fn whole(kept: &[bool], shape: &[usize], axes: &[Vec<AxisWeights>]) -> Vec<bool> {
+    if kept.iter().all(|&kept| kept) {
+        return vec![true; axes.iter().map(Vec::len).product()];
+    }
     let missing: Vec<f64> = kept
         .iter()
         .map(|&kept| f64::from(u8::from(!kept)))

@@ -1,9 +1,10 @@
 //! The numbers of a passage with their errors, from several grids.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::memory::PassageMemory;
-use super::solve::{Numbers, Question};
+use super::moments::Numbers;
+use super::solve::Question;
 use super::{KnownDensity, Passage, PassageError};
 use crate::cancellation::Cancellation;
 use crate::generator::GeneratorOptions;
@@ -89,6 +90,7 @@ pub(crate) fn timed_from(
         options: settings.0,
         rates: settings.1,
         cancellation,
+        masses: OnceLock::new(),
     };
     // The density of the rate on the fewest cells is where the others look for theirs.
     let [more, fewest] = FEWER;

@@ -2,7 +2,7 @@
 //! small models of the generator tell them.
 
 use super::Passage;
-use super::solve::Numbers;
+use super::moments::Numbers;
 use super::survival::Survival;
 
 /// Times this much shorter than the mean are no longer told apart, and products of the rate and a time from which on

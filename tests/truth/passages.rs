@@ -142,6 +142,25 @@ fn errors_of_an_oscillator_over_a_barrier_hold_from_weak_damping_to_strong() {
 }
 
 #[test]
+fn a_passage_takes_three_factorisations_and_the_same_bits_on_any_number_of_threads() {
+    let model = model(
+        &[("x", "y"), ("y", "x - x^3 - 0.5 y")],
+        &[("y", "sqrt(0.2)")],
+    );
+    let axes = [(-2.5, 2.5, 60), (-2.5, 2.5, 60)];
+    let [one, two] = [1, 2].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let pool = pool.build().unwrap();
+        pool.install(|| passage(&model, "x > 0.5", &[-1.0, 0.0], &axes))
+    });
+    assert_eq!(one, two);
+    assert_eq!(one.work.factorisations, 3);
+    // A grid takes two passes for the times, two for their times and a density of another grid, three for what is
+    // expected, and some eight vectors for the rate, of two passes each in single precision.
+    assert!(one.work.passes <= 70, "{:?}", one.work);
+}
+
+#[test]
 fn wells_of_one_dimension_are_left_as_quadrature_says() {
     for d in [0.05, 0.1, 0.2] {
         let noise = format!("sqrt(2*{d})");

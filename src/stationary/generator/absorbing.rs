@@ -13,6 +13,7 @@
 
 mod expected;
 mod stage;
+mod work;
 
 use sprs::CsMat;
 
@@ -25,10 +26,20 @@ use super::{RateError, RateMethod, RateOptions};
 use crate::cancellation::Cancellation;
 use crate::space::CellSpace;
 pub(crate) use expected::Expected;
+pub use work::AbsorbingWork;
+pub(crate) use work::FactorMemory;
 
 /// Bytes of factors in double precision, over what is large for iterations, up to which they are made: a pass takes
 /// twice as long as in single precision, and a solve half as many.
 const ROOM: u64 = 4;
+
+/// What a first pass through factors in single precision may leave of a solution: as much again is left by the second,
+/// and the two take as long as one in double precision.
+const LIGHT: f64 = 1e-3;
+
+/// Error at which solves by factors in single precision stop, over that which is asked for: numbers have the square of
+/// it, because what the equations of both sides leave puts them right.
+const LOOSER: f64 = 30.0;
 
 /// Solves a process that ends, with one factorisation.
 pub(crate) struct AbsorbingSolver<'s> {
@@ -41,32 +52,17 @@ pub(crate) struct AbsorbingSolver<'s> {
     is_rough: bool,
     /// Whether no cell need be held where solves are left after one pass.
     is_free: bool,
+    /// Whether factors in single precision are tried first, where no cell need be held.
+    is_light: bool,
+    /// Whether solves by such factors leave no more than others.
+    is_tight: bool,
+    /// Whether the current factors are those of the matrix itself, with no cell held that is coupled to others.
+    is_unheld: bool,
     /// What the first pass through the factors did, where solves may be left after one.
     first: Option<FirstPass>,
     /// Factorisations that were made, and passes through them.
     pub(crate) work: AbsorbingWork,
     cancellation: Cancellation,
-}
-
-/// Structure and memory of factors, kept from one matrix to the next.
-#[derive(Default)]
-pub(crate) struct FactorMemory(Option<Preconditioner>);
-
-/// What was done.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct AbsorbingWork {
-    /// Factorisations.
-    pub factorisations: usize,
-    /// Passes of forward and backward substitution.
-    pub passes: usize,
-}
-
-impl AbsorbingWork {
-    /// Takes up what was done besides.
-    pub(crate) fn add(&mut self, more: Self) {
-        self.factorisations += more.factorisations;
-        self.passes += more.passes;
-    }
 }
 
 /// A matrix that is being solved.
@@ -113,6 +109,9 @@ impl<'s> AbsorbingSolver<'s> {
             memory: None,
             is_rough: false,
             is_free: false,
+            is_light: false,
+            is_tight: false,
+            is_unheld: false,
             first: None,
             work: AbsorbingWork::default(),
             cancellation: cancellation.clone(),
@@ -131,6 +130,37 @@ impl<'s> AbsorbingSolver<'s> {
         self
     }
 
+    /// The same, with factors in single precision where that is asked for and no cell need be held: half of the memory
+    /// and of the time, and good for a matrix that is far from singular.
+    pub(crate) fn light(mut self, is_light: bool) -> Self {
+        self.is_light = is_light;
+        self
+    }
+
+    /// Whether the matrix is so far from singular that factors in single precision will do for others like it: known
+    /// of factors in double precision without a cell held.
+    pub(crate) fn is_far_from_singular(&self) -> bool {
+        let first = self.first.filter(|_| self.is_unheld && !self.is_light);
+        first.is_some_and(|first| {
+            first.contraction <= LIGHT * f64::EPSILON / f64::from(f32::EPSILON)
+        })
+    }
+
+    /// From now on what solves leave is as asked for also where factors are in single precision.
+    pub(crate) fn tighten(&mut self) {
+        self.is_tight = true;
+    }
+
+    /// Error at which a solve stops to be iterated, and most passes.
+    fn effort(&self) -> (f64, usize) {
+        let times = if self.is_light && !self.is_tight {
+            LOOSER
+        } else {
+            1.0
+        };
+        (times * self.options.tolerance, self.options.max_iterations)
+    }
+
     /// The same, with the structure and the memory of factors that another solver has left.
     pub(crate) fn with_memory(mut self, memory: FactorMemory) -> Self {
         self.memory = memory.0;
@@ -147,6 +177,9 @@ impl<'s> AbsorbingSolver<'s> {
     fn method(&self, structure: &Structure) -> Result<RateMethod, RateError> {
         let limit = self.options.memory_limit_bytes;
         let of = |method| estimate_of(self.space, structure, limit, Some(method));
+        if self.is_light {
+            return Ok(of(RateMethod::LuSingle)?.method);
+        }
         let room = if self.is_rough { ROOM * LARGE } else { LARGE };
         match of(RateMethod::Lu) {
             Ok(plan) if plan.factor_bytes <= room => Ok(plan.method),
@@ -175,7 +208,7 @@ impl<'s> AbsorbingSolver<'s> {
         self.work.factorisations += 1;
         let held = new.held;
         self.preconditioner = Some(new);
-        self.first = None;
+        (self.first, self.is_unheld) = (None, false);
         Ok(held)
     }
 
@@ -221,7 +254,7 @@ impl<'s> AbsorbingSolver<'s> {
         let sources = starts.map(|start| without(start, stage.held));
         let operator = |x: &[f64]| applied((stage.matrix, stage.held), x, false);
         let seats = [Seat::default(), Seat::default()];
-        let effort = (self.options.tolerance, self.options.max_iterations);
+        let effort = self.effort();
         let [one, other] = [0, 1].map(|at| {
             let source = (sources[at].as_slice(), self.first);
             refined(&seats[at], &operator, source, effort, &self.cancellation)
@@ -287,7 +320,7 @@ impl<'s> AbsorbingSolver<'s> {
         }
         let operator = |x: &[f64]| applied((matrix, held), x, is_transposed);
         let seat = Seat::default();
-        let effort = (self.options.tolerance, self.options.max_iterations);
+        let effort = self.effort();
         let source = (source, self.first);
         let work = refined(&seat, &operator, source, effort, &self.cancellation);
         let apply = |rest: &[f64]| {

@@ -22,6 +22,7 @@ pub(super) trait Number: faer::traits::ComplexField + Copy + Send + Sync + 'stat
     fn wide(self) -> Self::Wide;
 
     /// Rounds a real number.
+    #[inline]
     fn from_real(real: f64) -> Self {
         Self::from_rate(real.into())
     }
@@ -49,12 +50,14 @@ pub(super) trait Wide:
 }
 
 impl Wide for f64 {
+    #[inline]
     fn size(self) -> f64 {
         self.abs()
     }
 }
 
 impl Wide for Complex<f64> {
+    #[inline]
     fn size(self) -> f64 {
         self.re.abs().max(self.im.abs())
     }
@@ -64,14 +67,17 @@ impl Number for f64 {
     type Wide = Self;
     const SPACING: f64 = Self::EPSILON;
 
+    #[inline]
     fn from_rate(rate: f64) -> Self {
         rate
     }
+    #[inline]
     fn floored(self) -> Self {
         const FLOOR: f64 = 1e-150;
         let small = self < FLOOR && self > -FLOOR;
         if small { 0.0 } else { self }
     }
+    #[inline]
     fn wide(self) -> f64 {
         self
     }
@@ -81,14 +87,17 @@ impl Number for f32 {
     type Wide = f64;
     const SPACING: f64 = Self::EPSILON as f64;
 
+    #[inline]
     fn from_rate(rate: f64) -> Self {
         rate as Self
     }
+    #[inline]
     fn floored(self) -> Self {
         const FLOOR: f32 = 1e-18;
         let small = self < FLOOR && self > -FLOOR;
         if small { 0.0 } else { self }
     }
+    #[inline]
     fn wide(self) -> f64 {
         f64::from(self)
     }
@@ -98,12 +107,15 @@ impl Number for c32 {
     type Wide = Complex<f64>;
     const SPACING: f64 = f32::EPSILON as f64;
 
+    #[inline]
     fn from_rate(rate: Complex<f64>) -> Self {
         Self::new(rate.re as f32, rate.im as f32)
     }
+    #[inline]
     fn floored(self) -> Self {
         Self::new(self.re.floored(), self.im.floored())
     }
+    #[inline]
     fn wide(self) -> Complex<f64> {
         Complex::new(f64::from(self.re), f64::from(self.im))
     }

@@ -7,7 +7,7 @@ use super::super::newton::{FirstPass, norm};
 use super::super::preconditioner::NO_CELL;
 use super::super::solver::{largest, shape};
 use super::super::{RateError, RateMethod};
-use super::{Absorbing, AbsorbingSolver, Visits, without};
+use super::{Absorbing, AbsorbingSolver, LIGHT, Visits, without};
 
 /// Another cell is held where the one that is held is occupied for less than this share of the longest time.
 const LEAST_HELD: f64 = 1e-3;
@@ -45,6 +45,12 @@ impl AbsorbingSolver<'_> {
             Some(kept) => kept.held,
             None => {
                 if let Some(found) = self.without_held(matrix, ends, start)? {
+                    return Ok(found);
+                }
+                // In double precision where single precision did not do.
+                if std::mem::take(&mut self.is_light)
+                    && let Some(found) = self.without_held(matrix, ends, start)?
+                {
                     return Ok(found);
                 }
                 let structure = self.structure(matrix);
@@ -92,7 +98,7 @@ impl AbsorbingSolver<'_> {
             return Ok(None);
         };
         let structure = self.structure(matrix);
-        if self.method(&structure)? != RateMethod::Lu {
+        if !self.is_light && self.method(&structure)? != RateMethod::Lu {
             return Ok(None);
         }
         self.factorise(matrix, &structure, held)?;
@@ -111,10 +117,14 @@ impl AbsorbingSolver<'_> {
             contraction: norm(&correction) / norm(&times),
             left: norm(&rest) / norm(&source),
         };
-        if !first.is_enough(0.0, self.options.tolerance) {
+        let is_enough = match self.is_light {
+            true => first.contraction <= LIGHT,
+            false => first.is_enough(0.0, self.options.tolerance),
+        };
+        if !is_enough {
             return Ok(None);
         }
-        self.first = Some(first);
+        (self.first, self.is_unheld) = (Some(first), true);
         let pairs = times.iter_mut().zip(correction);
         pairs.for_each(|(value, correction)| *value += correction);
         let stage = Absorbing {

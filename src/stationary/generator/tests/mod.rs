@@ -1,5 +1,6 @@
 //! Tests of the solver against exact null vectors and dense algebra.
 
+mod absorbing;
 mod along;
 mod cancelled;
 mod exact;
