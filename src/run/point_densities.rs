@@ -12,8 +12,10 @@ use crate::sweep_file::{bytes_in_words, has_room};
 /// No density is as large: its square is still a number.
 const LARGEST: f64 = 1e150;
 
-/// Bytes that are tried for beside densities: heaps of threads, and what is read and drawn.
-const BESIDE: f64 = 1.5e8;
+/// Bytes that are tried for beside densities: what is read and drawn, and a heap a thread, for which the C library
+/// sets so many addresses aside.
+const BESIDE: f64 = 1e8;
+const HEAP: f64 = 6.8e7;
 
 /// The densities of a run, opened for the observables of a subject.
 pub(super) struct PointDensities<'a> {
@@ -73,7 +75,8 @@ impl<'a> PointDensities<'a> {
     /// [`RunError::Memory`].
     pub(super) fn check_room(&self, run: &Path, points: usize) -> Result<(), RunError> {
         let one = self.store.as_ref().map_or(0, StoredDensities::numbers);
-        let bytes = (points * one * size_of::<f64>()) as f64 + BESIDE;
+        let heaps = HEAP * rayon::current_num_threads() as f64;
+        let bytes = (points * one * size_of::<f64>()) as f64 + BESIDE + heaps;
         match has_room(bytes) {
             true => Ok(()),
             false => Err(RunError::Memory {
