@@ -198,7 +198,9 @@ fn limited(room: &Room, limit: &str, line: &str) -> Printed {
     shell
         .current_dir(room.path(""))
         .arg("-c")
-        .arg(format!("ulimit {limit}; exec \"$0\" \"$@\""));
+        .arg(format!("ulimit {limit}; exec \"$0\" \"$@\""))
+        // Every thread has a heap of its own: what fits depends on how many there are.
+        .env("RAYON_NUM_THREADS", "2");
     let shell = shell.arg(command.get_program()).args(command.get_args());
     Printed::of(line, shell.output().unwrap())
 }
