@@ -24,8 +24,8 @@ def _axis(left: str) -> str:
 class System:
     """A system of stochastic differential equations: your own, or a built-in one by its name.
 
-    `equations` are lines `x = …`, `x' = …` or `dx/dt = …` joined by `;` or line ends, or a mapping; `noise` gives an axis its amplitude, or a
-    list of them. Other keywords are values of parameters. The language is that of sweep files.
+    `equations` are lines `x = …`, `x' = …` or `dx/dt = …` joined by `;` or line ends, or a mapping; `noise` gives an
+    axis its amplitude, or a list of them. Other keywords are values of parameters. The language is that of sweep files.
 
     >>> import pbif
     >>> s = pbif.System("x = a x - x^3", noise={"x": "sqrt(s2)"}, a=0.0, s2=0.25)

@@ -14,6 +14,7 @@
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
+use super::bands::widen;
 use super::counting::{CountingSource, Solves};
 use super::found::Found;
 use super::in_doubt::{InDoubt, Watched};
@@ -224,9 +225,7 @@ impl<'p, 'a> Closer<'p, 'a> {
         row.zero.as_ref().is_some_and(|zero| zero.is_settled) || before.iter().any(is_like)
     }
 
-    /// Widens bands that are read off counts and lost indicators, of which nothing but the next grid tells how far they
-    /// are off: by the band on the cells before. Where an end has left that band by d, errors that fall by the ratio r
-    /// of the cells leave d / (r - 1). The ends of the stretch are certain.
+    /// Widens bands that are read off counts and lost indicators by those on the cells before.
     fn widen(&self, stretch: [f64; 2], rows: &mut [Located], before: &[Located]) {
         let CellCheck::OnFinerCells { ratio, .. } = self.work.source().subject().cell_check else {
             return;
@@ -234,17 +233,9 @@ impl<'p, 'a> Closer<'p, 'a> {
         for row in rows.iter_mut().filter(|row| row.zero.is_none()) {
             let mut before = before.iter();
             let like = before.find(|one| (one.before, one.after) == (row.before, row.after));
-            let Some([lower, upper]) = like.map(Located::hull) else {
-                continue;
-            };
-            let left = |distance: f64| distance.max(0.0) / (ratio - 1.0);
-            let ends = [
-                row.lower.min(lower) - left(lower - row.lower),
-                row.upper.max(upper) + left(row.upper - upper),
-            ];
-            [row.lower, row.upper] = ends.map(|end| end.clamp(stretch[0], stretch[1]));
-            row.value = 0.5 * (row.lower + row.upper);
-            row.error = 0.5 * (row.upper - row.lower);
+            if let Some(coarse) = like {
+                widen(row, coarse.hull(), ratio, stretch);
+            }
         }
     }
 

@@ -1,22 +1,20 @@
 //! The rows of a sweep: every change of signature with its value, error, bracket and status.
 
 use super::at_rest::beside_fixed_point;
-use super::bands::{band, by_bracket, by_persistence};
+use super::bands::{band, without_zero};
 use super::change::{Change, changes};
 use super::d_bifurcations::d_bifurcations;
-use super::doubt::MOST_TIMES;
 use super::doubt::{Doubt, Evidence, WiderRange};
 use super::follow::{Course, Crossing};
 use super::grid::{Checked, Checks, share_of_distance};
 use super::jump::instead_of_zero;
-use super::kinks::Kinks;
 use super::label::{self, Label, Located, Zero};
 use super::levels::crossings;
 use super::measure::NUMERICAL_DIFFUSION;
+use super::refined::{Cells, Refined, on_finer_cells};
 use super::root::{Root, root};
 use super::rows::{doubt_what_does_not_continue, in_order, inseparable, merge, without_flicker};
-use super::{CellCheck, ErrorParts, Finding, Goal, Point, Subject};
-use crate::density::EstimatedDensity;
+use super::{CellCheck, Finding, Goal, Point, Subject};
 use crate::topology::{Detector, Indicator};
 
 /// All labelled points of a sweep, in ascending parameter. `points` must be ascending.
@@ -38,25 +36,7 @@ pub(super) fn label_points(
                     let zero = (change, &**crossing);
                     by_indicator(&solved, subject, zero, detector, options, checks)
                 }
-                Some(Course::Lost(at, reach)) => {
-                    let lost = ([*at; 2], Some(*reach));
-                    by_bracket(&solved, observables, change, lost, Doubt::IndicatorLost)
-                }
-                Some(Course::Sunk(at)) => {
-                    let is_above = change.event.as_ref().is_some_and(|event| event.above);
-                    let end = if is_above {
-                        0
-                    } else {
-                        solved.len().saturating_sub(2)
-                    };
-                    let lost = ([*at, end], None);
-                    by_bracket(&solved, observables, change, lost, Doubt::TooLow)
-                }
-                Some(Course::Beyond(at)) => {
-                    let lost = ([*at; 2], None);
-                    by_bracket(&solved, observables, change, lost, Doubt::BornBeyond)
-                }
-                None => by_persistence(&solved, observables, change, detector),
+                _ => without_zero(&solved, observables, change, detector),
             };
             (row, change)
         });
@@ -194,121 +174,6 @@ pub(super) fn by_indicator(
     }
 }
 
-/// How many times as much as two grids differ by the schemes may differ on the coarser one, of which the finer cells
-/// mend most: what two grids agree on better than that they may agree on by chance, too. Of 124 located rows of random
-/// systems on which two grids decided 28 do, and the six that were off by more than half of what was stated are among
-/// these (docs/location.md).
-const CHANCE: f64 = 30.0;
-
-/// What is stated at least where no third grid tells, as a share of what the schemes differ by on the finer cells. Most
-/// of that is the error of the second scheme, whose order is lower.
-const UNTOLD: f64 = 0.5;
-
-/// The cells that a zero was found on.
-struct Cells<'a> {
-    density: &'a EstimatedDensity,
-    check: CellCheck,
-    /// What is claimed of the distance to finer cells.
-    share: f64,
-    is_forced: bool,
-    /// Whether they are so wide that errors may fall by any order, and two grids agree by chance.
-    is_wide: bool,
-    /// Whether finer ones move with what lies inside of these: where in a cell that is here is chance.
-    is_followed: bool,
-}
-
-/// What finer cells have said of a zero.
-#[derive(Debug, Clone, Copy)]
-struct Refined {
-    /// How often they were refined.
-    times: u8,
-    /// See [`Zero::is_settled`].
-    is_settled: bool,
-}
-
-/// Moves a zero to where finer cells have it, and finer ones again where their error exceeds the tolerance, or where
-/// two grids alone may agree by chance; returns what they say of it, or against it.
-fn on_finer_cells(
-    zero: &mut Root,
-    checked: &Checked<'_>,
-    cells: Cells<'_>,
-    options: &Goal,
-    checks: &mut dyn Checks,
-) -> Option<Result<Refined, Doubt>> {
-    let Cells { density, share, .. } = cells;
-    let kinks = Kinks::near(density, checked.place);
-    let (mut own, mut expected) = (zero.error.grid, 0.0);
-    let mut found = None;
-    let mut distances = Vec::new();
-    // What is stated at least as long as two grids alone agree.
-    let mut untold = None;
-    for times in 1..=MOST_TIMES {
-        let again = Checked {
-            root: *zero,
-            ..*checked
-        };
-        match checks.on_finer_cells(&again, times) {
-            Some(Ok(finer)) => {
-                let distance = (finer.value - zero.value).abs();
-                distances.push(distance);
-                // What a forcing carries to and fro is off by no more than the schemes differ on the finer cells, of
-                // which the value is.
-                let least = if cells.is_forced {
-                    finer.error
-                } else {
-                    own.max(finer.error)
-                };
-                // Where cells are wide it may be off by as much as that.
-                let by_schemes = if cells.is_wide { finer.error } else { 0.0 };
-                // Nor is their order known where they agree so much better than schemes on the coarser cells do; those
-                // of what a forcing carries are always wide.
-                let schemes = if cells.is_forced { finer.error } else { own };
-                let is_chance = times == 1 && schemes > CHANCE * distance;
-                let share = match is_chance {
-                    true => share_of_distance(cells.check, false).max(share),
-                    false => share,
-                };
-                let claimed = kinks.share(times, share, cells.check) * distance;
-                let grid = claimed.max(expected).max(by_schemes);
-                let blur = kinks.by_schemes(times, [own, finer.error]);
-                zero.error.grid = at_least(grid, (blur, least), kinks, density, options);
-                zero.value = finer.value;
-                own = finer.error;
-                expected = kinks.share(2, share, cells.check) * distance / kinks.fall(cells.check);
-                let is_settled = are_settled(&distances, cells.check);
-                found = Some(Ok(Refined { times, is_settled }));
-                // What schemes differ by less than the tolerance is not worth a third grid.
-                let is_worth = is_chance && schemes > options.tolerance;
-                untold = is_worth.then_some(UNTOLD * finer.error);
-            }
-            // What cannot be solved on so many cells says nothing against fewer.
-            Some(Err(Doubt::CheckFailed(..))) if times > 1 => break,
-            Some(Err(doubt)) => return Some(Err(doubt)),
-            None => break,
-        }
-        let ErrorParts { grid, .. } = zero.error;
-        let is_known = zero.error.total() <= options.tolerance || grid < 0.5 * zero.error.total();
-        let is_by_chance = times == 1 && (cells.is_wide && options.is_closer || cells.is_followed);
-        if is_known && untold.is_none() && !is_by_chance {
-            break;
-        }
-    }
-    if let Some(least) = untold {
-        zero.error.grid = zero.error.grid.max(least);
-    }
-    found
-}
-
-/// Whether distances between values on finer and finer cells fall as order one has it, or faster. Two grids tell
-/// nothing of that.
-fn are_settled(distances: &[f64], check: CellCheck) -> bool {
-    let CellCheck::OnFinerCells { ratio, .. } = check else {
-        return false;
-    };
-    let mut pairs = distances.windows(2);
-    distances.len() > 1 && pairs.all(|pair| pair[1] * ratio <= pair[0])
-}
-
 pub(super) fn has_wide_cells(point: &Point) -> bool {
     let mut findings = point.report.findings.iter();
     findings.any(|finding| matches!(finding, Finding::WideCells { .. }))
@@ -367,34 +232,6 @@ fn against(
         .chain(jumps)
         .collect()
 }
-
-/// The error that cells are said to make, of the distance to finer ones. Two grids may agree by chance: where a bend
-/// lies in its cell is chance, and both may be off by what a scheme makes of it; how level lines of a formula run
-/// through cells is chance too.
-fn at_least(
-    distance: f64,
-    (blur, both): (f64, f64),
-    kinks: Kinks,
-    density: &EstimatedDensity,
-    options: &Goal,
-) -> f64 {
-    let is_blurred = kinks != Kinks::None && density.density.axes.len() > 1;
-    if is_blurred && density.is_by_quadrature() {
-        // No scheme takes part in closed forms that another source gives on cells. What the generator finds by
-        // quadrature does not come here: its indicators follow from a profile, which no cells change.
-        return distance;
-    }
-    let least = distance.max(LEAST_CLAIM * options.tolerance);
-    match density.structure.is_spread {
-        true => least.max(both),
-        false if is_blurred => least.max(blur),
-        false => least,
-    }
-}
-
-/// Share of the tolerance below which no error is claimed where a scheme takes part: two grids may agree that well by
-/// chance.
-const LEAST_CLAIM: f64 = 1e-2;
 
 /// Mass in the outermost cells below which what leaves Ω matters nowhere.
 pub(super) const QUIET: f64 = 1e-11;

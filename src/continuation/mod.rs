@@ -65,6 +65,7 @@ pub(crate) mod measure;
 mod observer;
 mod persistence;
 mod point;
+mod refined;
 mod report;
 mod root;
 mod rows;

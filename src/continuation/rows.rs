@@ -45,6 +45,7 @@ pub(super) fn without_flicker(mut rows: Vec<Located>) -> Vec<Located> {
     }
 }
 
+/// Rows with one in place of each run of several that cannot be kept apart.
 fn merged(rows: &[Located]) -> Vec<Located> {
     let mut kept = Vec::new();
     for run in rows.chunk_by(is_one_doubt) {

@@ -242,8 +242,9 @@ impl EstimatedDensity {
             .collect()
     }
 
-    /// Values and their stated errors as other programs get them: what the solver leaves below zero is zero, and what
-    /// is left is scaled so that the integral stays.
+    /// Values and their stated errors as other programs get them, each one a cell in the order of `density.values` and
+    /// in its unit: what the solver leaves below zero is zero, and what is left is scaled so that the integral stays.
+    /// Where nothing is above zero, values are zero and errors stay.
     pub fn above_zero(&self) -> [Vec<f64>; 2] {
         let masses = self.density.masses();
         let below = negative_part(&masses);

@@ -147,13 +147,21 @@ fn check_table<'n>(
         } else if is_table {
             check_table(&entry.node, path, draft, found);
         } else {
-            let title = format!("`{}` must be a table", path.join("."));
+            // Of an axis the number of cells is enough (see `respell.rs`).
+            let number = match path.as_slice() {
+                ["cells", _] => "a whole number of cells, or ",
+                _ => "",
+            };
+            let title = format!("`{}` must be {number}a table", path.join("."));
             let diagnostic = Diagnostic::new(title)
                 .at(
                     &entry.node.place,
                     format!("this is {}", entry.node.value.kind()),
                 )
-                .allowed(format!("a table with the keys {}", below(path).join(", ")))
+                .allowed(format!(
+                    "{number}a table with the keys {}",
+                    below(path).join(", ")
+                ))
                 .remedy(format!(
                     "write [{}] on a line of its own, and below it a line `{} = ...` for each",
                     path.join("."),

@@ -11,7 +11,7 @@ use crate::formula::language::{canonical_name, check_name};
 /// The document with the names of its equations and the counts of cells spelled alike everywhere.
 pub(super) fn respell(document: &Document) -> Document {
     let mut document = document.clone();
-    for_node(&mut document.root, &["cells"], &mut counts);
+    for_node(&mut document.root, &["cells"], &mut spell_counts);
     let names = |path: &[&str]| -> Vec<String> {
         let entries = document.root.find(path).map(|entry| entry.node.entries());
         let entries = entries.unwrap_or_default().iter();
@@ -51,7 +51,7 @@ fn for_node(node: &mut SpannedValue, path: &[&str], change: &mut dyn FnMut(&mut 
 }
 
 /// Makes a table of a whole number of cells; how accurate all cells are is another number.
-fn counts(cells: &mut SpannedValue) {
+fn spell_counts(cells: &mut SpannedValue) {
     let Value::Table(entries) = &mut cells.value else {
         return;
     };

@@ -193,18 +193,25 @@ fn noise_that_depends_on_the_angle_spreads_it_by_its_harmonic_mean() {
     );
 }
 
-#[test]
-fn a_rotor_without_torque_spreads_evenly_and_a_driven_one_turns_as_known() {
-    let model = TypedModel::new("rotor", "Rotor", ["theta", "y"])
+/// Torques, and mean velocities of [`driven_rotor`] by a product of Hermite and Fourier modes, 40 × 25, of another
+/// program.
+const ROTOR_VELOCITIES: [(f64, f64); 3] = [(0.0, 0.0), (0.5, 0.328_288_1), (1.0, 1.694_755_1)];
+
+fn driven_rotor() -> Arc<Model> {
+    TypedModel::new("rotor", "Rotor", ["theta", "y"])
         .with_equation("theta", "y")
         .with_equation("y", "-0.5 y - sin(theta) + A")
         .with_noise("y", ["sqrt(0.6)"])
         .with_angle("theta", TAU)
         .with_parameters(["A"])
         .build()
-        .unwrap();
-    // By a product of Hermite and Fourier modes, 40 × 25, of another program.
-    for (torque, velocity) in [(0.0, 0.0), (0.5, 0.328_288_1), (1.0, 1.694_755_1)] {
+        .unwrap()
+}
+
+#[test]
+fn a_rotor_without_torque_spreads_evenly_and_a_driven_one_turns_as_known() {
+    let model = driven_rotor();
+    for (torque, velocity) in ROTOR_VELOCITIES {
         let axes = vec![
             Axis::fourier(-PI, PI, 12).unwrap(),
             Axis::uniform(-5.5, 7.5, 90).unwrap(),
@@ -251,22 +258,15 @@ fn a_free_rotor_has_einsteins_diffusion_and_terminal_velocity() {
 
 #[test]
 fn means_of_a_rotor_with_few_harmonics_have_an_error_of_these() {
-    let model = TypedModel::new("rotor", "Rotor", ["theta", "y"])
-        .with_equation("theta", "y")
-        .with_equation("y", "-0.5 y - sin(theta) + A")
-        .with_noise("y", ["sqrt(0.6)"])
-        .with_angle("theta", TAU)
-        .with_parameters(["A"])
-        .build()
-        .unwrap();
+    let model = driven_rotor();
     // The mean of the velocity is that of the angle.
-    for (torque, velocity) in [(0.5, 0.328_288_1), (1.0, 1.694_755_1)] {
+    for (torque, velocity) in &ROTOR_VELOCITIES[1..] {
         for harmonics in [6, 8] {
             let axes = vec![
                 Axis::fourier(-PI, PI, harmonics).unwrap(),
                 Axis::uniform(-5.5, 7.5, 90).unwrap(),
             ];
-            let (_, report) = solved(&model, torque, axes);
+            let (_, report) = solved(&model, *torque, axes);
             let (mean, error) = known(&report, "mean_y");
             assert!(
                 (mean - velocity).abs() < error + 1e-7,

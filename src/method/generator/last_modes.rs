@@ -24,9 +24,6 @@ const MODES_A_MODE_LEFT_OUT: usize = 5;
 /// Times what the last harmonics change of a mean: those that are not there may do as much.
 const SAFETY: f64 = 2.0;
 
-/// Axes whose last modes are left out, one flag an axis.
-type Asked = Vec<bool>;
-
 impl GeneratorSession {
     /// Adds to densities of solved masses what the last modes of all axes of coloured noise change in them.
     pub(super) fn add_last_modes(
@@ -36,7 +33,7 @@ impl GeneratorSession {
         densities: &mut [EstimatedDensity],
     ) -> Result<(), MethodError> {
         let space = self.source.problem.space().clone();
-        let asked = space.axes().iter().map(is_coloured_noise).collect();
+        let asked: Vec<bool> = space.axes().iter().map(is_coloured_noise).collect();
         let Some(there) = self.by_fewer_modes(solved, &asked)? else {
             return Ok(());
         };
@@ -84,12 +81,12 @@ impl GeneratorSession {
         Ok(pairs.map(with).collect())
     }
 
-    /// The unknowns as they would be without the last modes of these axes; `None` where there are none such, or
-    /// nothing is to be judged.
+    /// The unknowns as they would be without the last modes of the axes that are asked, by a flag an axis; `None` where
+    /// there are none such, or nothing is to be judged.
     fn by_fewer_modes(
         &mut self,
         solved: &PointSolve,
-        asked: &Asked,
+        asked: &[bool],
     ) -> Result<Option<Vec<f64>>, MethodError> {
         let space = self.source.problem.space().clone();
         let Some(second) = solved.second.as_ref().filter(|_| asked.contains(&true)) else {
@@ -110,7 +107,7 @@ impl GeneratorSession {
 }
 
 /// What all modes but the last ones of each of these axes carry of masses at the nodes.
-fn of_first_modes(space: &CellSpace, asked: &Asked, masses: &[f64]) -> Vec<f64> {
+fn of_first_modes(space: &CellSpace, asked: &[bool], masses: &[f64]) -> Vec<f64> {
     let mut first = masses.to_vec();
     let mut stride = 1;
     for (axis, asked) in space.axes().iter().zip(asked).rev() {
