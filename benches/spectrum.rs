@@ -45,6 +45,7 @@ fn run(friction: f64, count: usize) {
     let steady = Steady {
         masses: &masses,
         closed: &[[false; 2]; 2],
+        phase: None,
     };
     let (settings, never) = ((&options, &rates), Cancellation::new());
     let clock = Instant::now();

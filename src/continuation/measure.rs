@@ -166,6 +166,12 @@ pub(crate) const AMPLIFICATION: MeasureKind = kind(
     "{}^2",
     "spectral amplification: the same over the amplitude of the forcing, squared",
 );
+pub(crate) const SIGNAL_TO_NOISE: MeasureKind = kind(
+    "signal_to_noise",
+    "1/t",
+    "signal-to-noise ratio at the frequency of the forcing: π times the square of the amplitude of the mean, over the \
+     power spectrum of the fluctuations about it",
+);
 pub(crate) const DECAY_RATE: MeasureKind = kind(
     "decay_rate",
     "1/t",

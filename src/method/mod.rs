@@ -102,9 +102,9 @@ pub enum MethodError {
         "the phases that are watched are no parts of a period divided evenly by at most {MOST_PHASES}, at which trajectories are looked at: give fractions of a common denominator up to there"
     )]
     Phases,
-    /// Times of first passage, slow modes, or spectra, of a system under a periodic force.
+    /// Times of first passage, or slow modes, of a system under a periodic force.
     #[error(
-        "times of first passage, slow modes and spectra are not worked out under a periodic force: leave `[passage]`, `[relaxation]` and `[spectrum]` out"
+        "times of first passage and slow modes are not worked out under a periodic force: leave `[passage]` and `[relaxation]` out"
     )]
     ForcedQuestion,
     /// A passage with a region whose border runs through an axis of modes: what ends there has no smooth density.
@@ -236,9 +236,7 @@ fn has_densities(problem: &Problem) -> Result<(), MethodError> {
 /// [`MethodError::ForcedQuestion`], [`MethodError::RegionOfModes`] or [`MethodError::FieldAxes`].
 pub(crate) fn check_questions(problem: &Problem) -> Result<(), MethodError> {
     let family = problem.family();
-    let asks = !family.questions.passages.is_empty()
-        || family.questions.slow_modes > 0
-        || family.questions.spectrum.is_some();
+    let asks = !family.questions.passages.is_empty() || family.questions.slow_modes > 0;
     if asks && family.model().phase_axis().is_some() {
         return Err(MethodError::ForcedQuestion);
     }

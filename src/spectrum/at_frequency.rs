@@ -10,6 +10,7 @@ use crate::stationary::generator::{RateError, Shifted, ShiftedPattern};
 /// A shift at a frequency, and the last vectors of Krylov's spaces of both sides there, one an observable.
 pub(super) struct AtFrequency<'a> {
     pub(super) frequency: f64,
+    grid: &'a Grid,
     solver: Shifted<'a>,
     columns: Vec<Vec<Complex<f64>>>,
     rows: Vec<Vec<Complex<f64>>>,
@@ -35,6 +36,7 @@ impl<'a> AtFrequency<'a> {
         let shift = Complex::new(0.0, frequency);
         Ok(Self {
             frequency,
+            grid,
             solver: Shifted::new(pattern, &grid.full, shift, cancellation)?,
             columns: complex(columns),
             rows: complex(rows),
@@ -55,7 +57,8 @@ impl<'a> AtFrequency<'a> {
         let pairs = self.columns.iter().zip(&self.rows);
         let parts = pairs.flat_map(|pair| {
             [|one: &Complex<f64>| one.re, |one: &Complex<f64>| one.im].map(|part| {
-                let of = |vector: &[Complex<f64>]| balanced(vector.iter().map(part).collect());
+                let of =
+                    |vector: &[Complex<f64>]| self.grid.balanced(vector.iter().map(part).collect());
                 [of(pair.0), of(pair.1)]
             })
         });

@@ -38,7 +38,7 @@ pub(super) fn on_grids<T: Send + Sync>(
     solve: impl Fn(&Grid, &Motion, Option<(&CellSpace, &T)>) -> Worked<T> + Sync,
     tells: impl Fn(&T) -> bool,
 ) -> Worked<(T, Vec<T>)> {
-    let grid = |factor| Grid::new(system, space, factor, options);
+    let grid = |factor| Grid::new(system, space, (factor, steady.phase), options);
     let finest = grid(1.0)?;
     let motion = Motion::new(&finest, system.as_ref(), steady).ok_or(SpectrumError::Still)?;
     let [more, fewest] = FEWER.map(|(factor, _)| factor);

@@ -28,7 +28,7 @@
 //! let generator = assemble(&*system, &space, &options)?;
 //! let mut solver = RateSolver::new(space.clone(), rates);
 //! let masses = solver.solve(&generator.matrix, &generator.escape, None)?.mass;
-//! let steady = Steady { masses: &masses, closed: &[[false; 2]] };
+//! let steady = Steady { masses: &masses, closed: &[[false; 2]], phase: None };
 //! let found = slow_modes(&system, &space, 2, steady, (&options, &rates), &Cancellation::new())?;
 //! for (mode, exact) in found.modes.iter().zip([1.0, 2.0]) {
 //!     assert!((mode.decay.0 - exact).abs() <= mode.decay.1 && mode.decay.1 < 1e-2);
@@ -53,7 +53,7 @@
 //! # let generator = assemble(&*system, &space, &options)?;
 //! # let mut solver = RateSolver::new(space.clone(), rates);
 //! # let masses = solver.solve(&generator.matrix, &generator.escape, None)?.mass;
-//! # let steady = Steady { masses: &masses, closed: &[[false; 2]] };
+//! # let steady = Steady { masses: &masses, closed: &[[false; 2]], phase: None };
 //! // The same state: a Lorentzian of variance 0.25.
 //! let frequencies = [0.0, 0.5, 1.0, 4.0];
 //! let question = PowerQuestion {
@@ -107,6 +107,7 @@ mod slowest;
 mod switching;
 mod transfer;
 
+pub(crate) use grid::turning_rate;
 pub use kramers::{EscapeFormulas, escape_formulas};
 pub(crate) use on_line::{power_spectra_on_line, slow_modes_on_line};
 pub(crate) use power::rate_of_change;
@@ -125,6 +126,9 @@ pub struct Steady<'a> {
     pub masses: &'a [f64],
     /// Per axis, whether its ends are walls of the system, which nothing passes.
     pub closed: &'a [[bool; 2]],
+    /// The axis of modes that is the phase of a periodic force, where there is one: it turns at the same rate
+    /// everywhere. Fluctuations are then those about the mean at each phase, averaged over the period.
+    pub phase: Option<usize>,
 }
 
 /// Why there are no numbers.

@@ -50,6 +50,16 @@ pub struct Spectrum {
     pub features: Option<Features>,
 }
 
+impl Spectrum {
+    /// The real part at the frequency of a number, which is left out from here on; `None` where there is none.
+    pub(crate) fn taken_out(&mut self, number: usize) -> Option<Known> {
+        if number < self.imaginary.len() {
+            self.imaginary.remove(number);
+        }
+        (number < self.real.len()).then(|| self.real.remove(number))
+    }
+}
+
 /// Numbers of a power spectrum.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Features {
@@ -142,7 +152,7 @@ pub(crate) fn rate_of_change(
     let cells = space.axes().iter().filter(|axis| !axis.is_modes());
     let most = cells.map(Axis::count).max();
     let factor = ROUGH_CELLS / most.unwrap_or(1) as f64;
-    let grid = Grid::new(system, space, factor.min(1.0), settings.0)?;
+    let grid = Grid::new(system, space, (factor.min(1.0), None), settings.0)?;
     let mut solver = RateSolver::new(grid.space.clone(), *settings.1).cancelled_by(cancellation);
     let masses = solver
         .solve(&grid.full, &vec![0.0; grid.space.n_cells()], None)?
@@ -151,6 +161,7 @@ pub(crate) fn rate_of_change(
     let steady = Steady {
         masses: &masses,
         closed: &closed,
+        phase: None,
     };
     let motion = Motion::new(&grid, system.as_ref(), steady).ok_or(SpectrumError::Still)?;
     Ok(motion.rate)

@@ -4,7 +4,7 @@ use nalgebra::{Complex, DMatrix};
 
 use super::at_frequency::AtFrequency;
 use super::grid::{Grid, ending};
-use super::model::{Basis, Products, ReducedModel, balanced};
+use super::model::{Basis, Products, ReducedModel};
 use super::motion::Motion;
 use super::transfer::Transfer;
 use super::{SpectrumError, dot};
@@ -88,7 +88,7 @@ impl Resolvent {
             masses.push(solver.solve(matrix, &no_escape, guess)?.mass);
         }
         let deviations = masses.iter().map(|masses| {
-            let of = |values: &Vec<f64>| deviation(masses, values);
+            let of = |values: &Vec<f64>| grid.deviation(masses, values);
             observables.iter().map(of).collect::<Vec<_>>()
         });
         let deviations: Vec<Vec<Vec<f64>>> = deviations.collect();
@@ -154,13 +154,6 @@ impl Resolvent {
     }
 }
 
-/// p (g - ⟨g⟩).
-fn deviation(masses: &[f64], values: &[f64]) -> Vec<f64> {
-    let mean = dot(masses, values) / masses.iter().sum::<f64>();
-    let pairs = masses.iter().zip(values);
-    balanced(pairs.map(|(mass, value)| mass * (value - mean)).collect())
-}
-
 /// A few of the frequencies, the first and the last among them.
 fn some_of(frequencies: &[f64]) -> Vec<f64> {
     let last = frequencies.len().saturating_sub(1);
@@ -194,14 +187,19 @@ impl<'a> Growing<'a> {
             return;
         }
         for (values, deviation) in self.observables.iter().zip(&self.deviations[0]) {
-            let (mut column, mut row) = (deviation.clone(), centred(values));
+            let (mut column, mut row) = (deviation.clone(), self.centred(values));
             for _ in 0..AT_ONCE {
                 self.columns.add(column.clone());
                 self.rows.add(row.clone());
-                column = balanced(product(&self.grid.full, &column));
-                row = centred(&transposed_product(&self.grid.full, &row));
+                column = self.grid.balanced(product(&self.grid.full, &column));
+                row = self.centred(&transposed_product(&self.grid.full, &row));
             }
         }
+    }
+
+    /// Less its mean over the cells at each phase: constants do nothing where columns sum to zero.
+    fn centred(&self, values: &[f64]) -> Vec<f64> {
+        self.grid.balanced(values.to_vec())
     }
 
     /// Whether the factors at one more frequency are within the limit of memory.
@@ -216,6 +214,7 @@ impl<'a> Growing<'a> {
         solves: usize,
         cancellation: &Cancellation,
     ) -> Result<(), SpectrumError> {
+        let frequency = self.grid.beside_the_force(frequency);
         let is_near = |known: &AtFrequency<'_>| {
             let off = (known.frequency / frequency - 1.0).abs();
             off < if known.solves < MOST_SOLVES {
@@ -263,7 +262,7 @@ impl<'a> Growing<'a> {
         let (stage, _) = solver.stage(&matrix, &ends, &self.deviations[0][0])?;
         let mut chains: Vec<Option<(Vec<f64>, Vec<f64>)>> = Vec::new();
         for (values, deviation) in self.observables.iter().zip(&self.deviations[0]) {
-            chains.push(Some((deviation.clone(), centred(values))));
+            chains.push(Some((deviation.clone(), self.centred(values))));
         }
         let mut stands = None;
         for step in 1..=MOST {
@@ -271,8 +270,8 @@ impl<'a> Growing<'a> {
                 let Some((column, row)) = chain.take() else {
                     continue;
                 };
-                let column = balanced(solver.times(&stage, &column)?);
-                let row = centred(&solver.expected(&stage, &row)?.values());
+                let column = self.grid.balanced(solver.times(&stage, &column)?);
+                let row = self.centred(&solver.expected(&stage, &row)?.values());
                 if self.columns.add(column) && self.rows.add(row) {
                     let newest = |basis: &Basis| basis.vectors.last().cloned();
                     *chain = newest(&self.columns).zip(newest(&self.rows));
@@ -386,9 +385,4 @@ impl<'a> Growing<'a> {
             work,
         })
     }
-}
-
-/// Less its mean over the cells: constants do nothing where columns sum to zero.
-fn centred(values: &[f64]) -> Vec<f64> {
-    balanced(values.to_vec())
 }

@@ -10,6 +10,7 @@ mod angular_fluctuations;
 mod coloured_noise;
 mod exchanged_peaks;
 mod forced;
+mod forced_fluctuations;
 mod friction_laws;
 mod gallery;
 mod hard_cases;

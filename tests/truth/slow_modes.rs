@@ -18,6 +18,7 @@ fn modes(model: &Arc<Model>, axes: &[(f64, f64, usize)], wanted: usize) -> SlowM
     let steady = Steady {
         masses: &masses(&*system, &space),
         closed: &vec![[false; 2]; axes.len()],
+        phase: None,
     };
     let settings = (&GeneratorOptions::default(), &RateOptions::default());
     let never = Cancellation::new();

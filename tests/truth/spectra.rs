@@ -20,6 +20,7 @@ fn spectra(model: &Arc<Model>, axes: &[(f64, f64, usize)], question: &PowerQuest
     let steady = Steady {
         masses: &masses(&*system, &space),
         closed: &vec![[false; 2]; axes.len()],
+        phase: None,
     };
     let settings = (&GeneratorOptions::default(), &RateOptions::default());
     let (never, clock) = (Cancellation::new(), Instant::now());

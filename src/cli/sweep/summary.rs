@@ -171,6 +171,8 @@ fn files(folder: &Path) -> Vec<String> {
         "points.csv",
         "features.csv",
         "densities.zarr",
+        "spectra.csv",
+        "correlations.csv",
         "checks.csv",
         "closer_looks.json",
         "run.json",

@@ -5,14 +5,15 @@ use crate::continuation::MeasureKind;
 use crate::continuation::measure::{
     AMPLIFICATION, AMPLITUDE, DECAY_DISCRIMINANT, DEVIATION, DIVERGENCE, EXPONENT,
     PASSAGE_DEVIATION, PASSAGE_KRAMERS, PASSAGE_MEAN, PASSAGE_MELNIKOV, PASSAGE_QUANTILE,
-    PASSAGE_SHARE, PASSAGE_SURVIVAL, SPECTRAL_PEAK, TIME_STEP_BIAS, TURN_DIFFUSION, VELOCITY,
+    PASSAGE_SHARE, PASSAGE_SURVIVAL, SIGNAL_TO_NOISE, SPECTRAL_PEAK, TIME_STEP_BIAS,
+    TURN_DIFFUSION, VELOCITY,
 };
 use crate::density::Observable;
 use crate::figure::canvas::symbols;
 use crate::system::Family;
 
 /// Words of measures that the field calls otherwise than tables do.
-const TITLES: [(MeasureKind, &str); 17] = [
+const TITLES: [(MeasureKind, &str); 18] = [
     (PASSAGE_MEAN, "mean time"),
     (PASSAGE_DEVIATION, "standard deviation"),
     (PASSAGE_KRAMERS, "Kramers' rate"),
@@ -27,6 +28,7 @@ const TITLES: [(MeasureKind, &str); 17] = [
     (TURN_DIFFUSION, "effective diffusion"),
     (AMPLITUDE, "amplitude of the mean"),
     (AMPLIFICATION, "spectral amplification"),
+    (SIGNAL_TO_NOISE, "signal-to-noise ratio"),
     (DECAY_DISCRIMINANT, "discriminant of the slowest modes"),
     (SPECTRAL_PEAK, "frequency of the spectral peak"),
     (TIME_STEP_BIAS, "bias by the time step"),

@@ -51,6 +51,7 @@ pub(super) fn add_slow_modes(
         let steady = Steady {
             masses: density.unknowns,
             closed,
+            phase: None,
         };
         let settings = (&generator, &rates);
         slow_modes(system, space, wanted, steady, settings, cancellation)

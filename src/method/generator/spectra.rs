@@ -6,11 +6,11 @@ use super::GeneratorSource;
 use crate::cancellation::Cancellation;
 use crate::continuation::{Finding, Fluctuations, SolveReport};
 use crate::generator::{GeneratorOptions, Mesh};
-use crate::method::measures::measures_of_spectrum;
+use crate::method::measures::{measures_of_spectrum, signal_to_noise};
 use crate::method::{MethodError, Problem};
 use crate::spectrum::{
     PowerQuestion, Spectrum, SpectrumError, StateFunction, Steady, power_spectra,
-    power_spectra_on_line, rate_of_change,
+    power_spectra_on_line, rate_of_change, turning_rate,
 };
 use crate::stationary::generator::{RateError, RateOptions};
 use crate::system::{BoundQuantity, Fluctuating, SpectrumQuestion, System};
@@ -57,11 +57,14 @@ pub(super) fn add_spectra(
         .iter()
         .map(|one| &**one as StateFunction<'_>)
         .collect();
+    let phase = source.problem.family().model().phase_axis();
+    let force = phase.map(|axis| turning_rate(system.as_ref(), space, axis));
     let frequencies = question.band.frequencies();
+    let (looked_at, at_force) = with_force(&frequencies, force);
     let asked = PowerQuestion {
         observables: &observables,
         pairs: &question.pairs,
-        frequencies: &frequencies,
+        frequencies: &looked_at,
         lags: question.lags(),
     };
     let (generator, rates) = options(source.options.scheme, source.options.memory_limit);
@@ -69,6 +72,7 @@ pub(super) fn add_spectra(
         let steady = Steady {
             masses,
             closed: &source.closed_ends,
+            phase,
         };
         power_spectra(
             system,
@@ -91,10 +95,13 @@ pub(super) fn add_spectra(
             return Ok(());
         }
     };
-    for (&pair, spectrum) in question.pairs.iter().zip(found) {
+    for (&pair, mut spectrum) in question.pairs.iter().zip(found) {
         let of = question.name(pair);
+        let at_force = at_force.and_then(|place| spectrum.taken_out(place));
+        let ratio = at_force.and_then(|power| signal_to_noise(&of, &report.measures, power));
         if let Some(features) = &spectrum.features {
             report.measures.extend(measures_of_spectrum(&of, features));
+            report.measures.extend(ratio);
             report.findings.extend(cut_off(&spectrum, &frequencies));
         }
         report
@@ -102,6 +109,17 @@ pub(super) fn add_spectra(
             .push(fluctuations(of, spectrum, question));
     }
     Ok(())
+}
+
+/// Frequencies with that of a periodic force among them, in ascending order, and its number.
+fn with_force(frequencies: &[f64], force: Option<f64>) -> (Vec<f64>, Option<usize>) {
+    let mut all = frequencies.to_vec();
+    let number = force.map(|force| {
+        let number = all.partition_point(|&frequency| frequency < force);
+        all.insert(number, force);
+        number
+    });
+    (all, number)
 }
 
 /// A finding where a power spectrum is not known from a frequency on.

@@ -13,7 +13,7 @@ pub(super) use passage::{
     formula_measures, measures as measures_of_passage, switching_measures, transition_measures,
 };
 pub(super) use slow_modes::measures as measures_of_slow_modes;
-pub(super) use spectra::measures as measures_of_spectrum;
+pub(super) use spectra::{measures as measures_of_spectrum, signal_to_noise};
 
 pub(super) use balance::broken;
 
