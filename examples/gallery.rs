@@ -80,10 +80,13 @@ fn section(file: &StartingFile, images: &Path) -> Result<String, Box<dyn std::er
         )?;
     }
     let figures = Figures::of_sweep(&found, file.title(), &[]);
-    let (name, drawn) = match &family.questions.spectrum {
-        Some(_) => (format!("spectrogram_{}", family.axis(0)), "Spectrum"),
-        None => (format!("diagram_{}", family.axis(0)), "Density"),
+    let is_forced = family.model().axes.iter().any(|axis| axis.name == "t");
+    let (kind, drawn) = match (&family.questions.spectrum, is_forced) {
+        (Some(_), true) => ("measures_signal_to_noise", "Signal-to-noise ratio"),
+        (Some(_), false) => ("spectrogram", "Spectrum"),
+        (None, _) => ("diagram", "Density"),
     };
+    let name = format!("{kind}_{}", family.axis(0));
     for figure in figures.draw(&name)? {
         let picture = format!("{}.svg", file.name);
         std::fs::write(images.join(&picture), figure.svg())?;

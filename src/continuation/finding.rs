@@ -208,6 +208,14 @@ pub enum Finding {
         /// Why.
         fault: PassageFault,
     },
+    /// How often a region is visited, that was asked for, has no number.
+    NoVisits {
+        /// Its number among those that were asked for.
+        visits: usize,
+        /// Whether noise acts across its border, so that there are infinitely many; else it is entered nowhere, or its
+        /// numbers are not known to their own size.
+        is_endless: bool,
+    },
     /// Paths of a passage still went on when they were given up.
     PassageCut {
         /// Its number among those that were asked for.

@@ -96,6 +96,18 @@ pub(crate) const PASSAGE_SHARE: MeasureKind = of_passage(
     "1",
     "share of the passages that end in one of several regions, which stands before the word",
 );
+pub(crate) const TIME_SHARE: MeasureKind =
+    of_passage("time_share", "1", "share of the time spent in a region");
+pub(crate) const VISITS: MeasureKind = of_passage(
+    "visits",
+    "1/t",
+    "how often a region is entered per unit of time",
+);
+pub(crate) const SOJOURN: MeasureKind = of_passage(
+    "sojourn",
+    "t",
+    "mean time from entering a region to leaving it",
+);
 pub(crate) const PASSAGE_THERE: MeasureKind = of_passage(
     "switching_rate",
     "1/t",

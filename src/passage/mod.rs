@@ -58,6 +58,7 @@
 //! | how they come into the cells | `source.rs` |
 //! | their density and current on a grid | `on_way.rs`, `current.rs` |
 //! | the steady state between nodes | `steady.rs` |
+//! | how often a region is visited, and for how long | `visits.rs` |
 
 mod cells;
 mod current;
@@ -84,6 +85,7 @@ mod survival;
 mod tensor;
 mod timed;
 mod times;
+mod visits;
 
 pub use density_start::KnownDensity;
 pub use field::{FieldTarget, PassageField, field};
@@ -93,6 +95,7 @@ pub(crate) use reactive::are_apart;
 pub use reactive::{Reactive, reactive};
 pub(crate) use timed::timed_from;
 pub use timed::{Timed, WithError, timed};
+pub use visits::{Visits, visits};
 
 use crate::generator::{GeneratorError, levels};
 use crate::space::{CellSpace, SpaceError};

@@ -243,6 +243,7 @@ fn solve_in_words(family: &Family, finding: &Finding) -> String {
             "a power spectrum is not known to a tenth from the frequency {frequency:.3} on: finer cells know more of it, or \
              `spectrum.to` leaves it out"
         ),
+        Finding::NoVisits { visits, is_endless } => visits_in_words(family, visits, is_endless),
         Finding::NoPassage { passage, fault } => passage_in_words(family, passage, fault),
         Finding::PassageCut {
             passage,
@@ -302,6 +303,21 @@ fn passage_name(family: &Family, passage: usize) -> &str {
         .passages
         .get(passage)
         .map_or("", |one| &one.name)
+}
+
+/// Why the visits of a region have no numbers, and what to do.
+fn visits_in_words(family: &Family, visits: usize, is_endless: bool) -> String {
+    let asked = family.questions.visits.get(visits);
+    let name = asked.map_or("", |one| &one.name);
+    let why = match is_endless {
+        true => {
+            "noise acts across its border, which is crossed infinitely often once it is met: ask for transitions between two regions that do not touch (`[passage]` with `transitions = \"on\"`)"
+        }
+        false => {
+            "its border is met nowhere in the cells, or the rate of its visits is not known to its own size: move the border, widen the ranges or use more cells"
+        }
+    };
+    format!("visits `{name}` have no numbers: {why}")
 }
 
 /// Why a passage has no numbers, and what to do.

@@ -271,6 +271,8 @@ pub(super) struct Draft {
     pub(super) averaged: Vec<(String, String)>,
     /// Names and inequalities of regions.
     pub(super) regions: Vec<(String, String)>,
+    /// Names of visits, and the regions that are visited.
+    pub(super) visits: Vec<(String, String)>,
     /// Names of measures, and levels of which the crossings are wanted.
     pub(super) levels: Vec<(String, f64)>,
     /// Questions of first passage, in the order given.
@@ -316,6 +318,7 @@ impl Default for Draft {
             bins: Vec::new(),
             averaged: Vec::new(),
             regions: Vec::new(),
+            visits: Vec::new(),
             levels: Vec::new(),
             passages: Vec::new(),
             exponent: None,

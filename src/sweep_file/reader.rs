@@ -149,17 +149,17 @@ fn check_table<'n>(
         } else {
             // Of an axis the number of cells is enough (see `respell.rs`).
             let number = match path.as_slice() {
-                ["cells", _] => "a whole number of cells, or ",
+                ["cells", _] => ", or a whole number of cells",
                 _ => "",
             };
-            let title = format!("`{}` must be {number}a table", path.join("."));
+            let title = format!("`{}` must be a table{number}", path.join("."));
             let diagnostic = Diagnostic::new(title)
                 .at(
                     &entry.node.place,
                     format!("this is {}", entry.node.value.kind()),
                 )
                 .allowed(format!(
-                    "{number}a table with the keys {}",
+                    "a table with the keys {}{number}",
                     below(path).join(", ")
                 ))
                 .remedy(format!(

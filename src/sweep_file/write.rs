@@ -49,6 +49,7 @@ fn names(key: &Key, draft: &Draft) -> Vec<String> {
         None => vec![String::new()],
         Some("<quantity>") => of(draft.bins.iter().map(|bins| &bins.name)),
         Some("<formula>") => of(draft.averaged.iter().map(|(name, _)| name)),
+        Some("<visits>") => of(draft.visits.iter().map(|(name, _)| name)),
         Some("<region>") => of(draft.regions.iter().map(|(name, _)| name)),
         Some("<measure>") => of(draft.levels.iter().map(|(name, _)| name)),
         Some("<axis>") => of(draft.axes.iter().map(|axis| &axis.name)),

@@ -66,7 +66,9 @@ pub use model::Model;
 pub use noise::{Amplitude, Noise};
 pub use oscillator::VELOCITY;
 pub(crate) use oscillator::{DISPLACEMENT, FIRST_INTERNAL_STATE};
-pub use passage::{FieldKind, FieldQuestion, MeasureLevel, PassageQuestion, PassageStart};
+pub use passage::{
+    FieldKind, FieldQuestion, MeasureLevel, PassageQuestion, PassageStart, VisitsQuestion,
+};
 pub use path::Path;
 pub(crate) use quantity::AtPhase;
 pub use quantity::{BoundQuantity, Quantity, QuantityError, QuantityFault, quantities};

@@ -25,6 +25,15 @@ pub struct PassageQuestion {
     pub quantiles: Vec<f64>,
 }
 
+/// A region of which it is wanted how often it is visited, and for how long.
+#[derive(Debug, Clone)]
+pub struct VisitsQuestion {
+    /// The name with which its numbers' names begin.
+    pub name: String,
+    /// The region.
+    pub region: Region,
+}
+
 impl PassageQuestion {
     /// Whether it starts in the basin of a peak, or ends there.
     pub(crate) fn has_basins(&self) -> bool {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{MeasureLevel, PassageQuestion, Quantity, Region, SpectrumQuestion};
+use super::{MeasureLevel, PassageQuestion, Quantity, Region, SpectrumQuestion, VisitsQuestion};
 
 /// How the largest Lyapunov exponent along the stationary density is worked out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,6 +24,8 @@ pub struct Questions {
     pub regions: Vec<Region>,
     /// Questions of first passage.
     pub passages: Vec<PassageQuestion>,
+    /// Regions of which it is wanted how often they are visited.
+    pub visits: Vec<VisitsQuestion>,
     /// Levels of measures of which the crossings are wanted.
     pub levels: Vec<MeasureLevel>,
     /// A state of which the largest Lyapunov exponent is wanted: one that neither drift nor noise moves, a coordinate

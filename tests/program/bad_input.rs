@@ -256,7 +256,7 @@ fn wrong_kinds_and_ranges() {
         (x, "x = { from = -5, to = 5, count = 1 }", "`cells.x.count` cannot be `1`"),
         (x, "x = { from = 5, to = -5, count = 10 }", "empty or reversed"),
         (x, "x = { from = 5, to = 5, count = 10 }", "empty or reversed"),
-        (x, "x = 10.5", "`cells.x` must be a whole number of cells, or a table"),
+        (x, "x = 10.5", "`cells.x` must be a table, or a whole number of cells"),
         (x, "x = [10]", "write [cells.x] on a line of its own"),
         ("[cells]", "[method]\nkind = \"monte-carol\"\n[cells]", "did you mean `monte-carlo`?"),
         ("[cells]", "[method]\nmap_step = \"atuo\"\n[cells]", "did you mean `\"auto\"`?"),

@@ -159,6 +159,32 @@ fn what_cannot_be_asked_of_fluctuations_is_said() {
 }
 
 #[test]
+fn visits_that_have_no_numbers_are_refused_with_a_way_out() {
+    let room = Room::new();
+    let visits = "[visits]\nhigh = \"x > 0.5\"\n";
+    room.write("a.toml", format!("{FILE}{visits}"));
+    room.done("check a.toml")
+        .says(&["[visits]", "high = \"x > 0.5\""]);
+    let refused = |set: &str, words: &[&str]| {
+        room.refused(&format!("check a.toml {set}"), words);
+    };
+    refused("visits.high=\"y>0.5\"", &["region `high_visits`", "`y`"]);
+    refused(
+        "visits.high=\"peak\"",
+        &["`peak` is neither an inequality nor the name of a region"],
+    );
+    refused("visits.high=2", &["`visits.high`", "string"]);
+    refused(
+        "method.kind=\"monte-carlo\"",
+        &["visits are worked out by `generator`"],
+    );
+    let line = "[system.equations]\nx = \"x - x^3\"\n[system.noise]\nx = \"sqrt(2 D)\"\n[system.parameters]\nD = 0.2\n\
+                [sweep]\nparameter = \"D\"\nfrom = 0.1\nto = 0.2\npoints = 2\n";
+    room.write("b.toml", format!("{line}{visits}"));
+    room.refused("check b.toml", &["a system with one axis", "transitions"]);
+}
+
+#[test]
 fn a_highest_frequency_is_found_and_stays() {
     let room = Room::new();
     room.write(

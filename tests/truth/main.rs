@@ -35,4 +35,5 @@ mod slow_modes;
 mod spectra;
 mod transitions;
 mod tutorials;
+mod visits;
 mod walls;

@@ -90,6 +90,9 @@ stored! {
         Self::FewSlowModes { known, wanted } => ("few-slow-modes", None, vec![known as f64, wanted as f64]);
         Self::EndlessMean { average } => ("endless-mean", None, vec![average as f64]);
         Self::NoPassage { passage, fault } => (fault.code(), None, vec![passage as f64]);
+        Self::NoVisits { visits, is_endless } => {
+            ("no-visits", None, vec![visits as f64, f64::from(u8::from(is_endless))])
+        };
         Self::PassageCut { passage, share, longest } => ("passage-cut", None, vec![passage as f64, share, longest]);
         Self::Told(_) => ("told", None, Vec::new());
     }
@@ -108,6 +111,10 @@ stored! {
             passage: passage as usize,
             share,
             longest,
+        };
+        ("no-visits", None, &[visits, is_endless]) => Self::NoVisits {
+            visits: visits as usize,
+            is_endless: is_endless != 0.0,
         };
         ("endless-mean", None, &[average]) => Self::EndlessMean { average: average as usize };
         (code, None, &[passage]) => Self::NoPassage {

@@ -108,14 +108,18 @@ pub(crate) fn every_finding() -> Vec<Finding> {
             let faults = PassageFault::CODES.into_iter().map(|(fault, _)| fault);
             let next = faults.skip_while(|one| *one != *fault).nth(1);
             Some(next.map_or_else(
-                || F::PassageCut {
-                    passage: 1,
-                    share: 0.25,
-                    longest: 1e4,
+                || F::NoVisits {
+                    visits: 1,
+                    is_endless: true,
                 },
                 |fault| F::NoPassage { passage: 1, fault },
             ))
         }
+        F::NoVisits { .. } => Some(F::PassageCut {
+            passage: 1,
+            share: 0.25,
+            longest: 1e4,
+        }),
         F::PassageCut { .. } => Some(F::PointMass {
             exponent: -0.02,
             error: 1e-15,

@@ -5,21 +5,24 @@ use crate::continuation::MeasureKind;
 use crate::continuation::measure::{
     AMPLIFICATION, AMPLITUDE, DECAY_DISCRIMINANT, DEVIATION, DIVERGENCE, EXPONENT,
     PASSAGE_DEVIATION, PASSAGE_KRAMERS, PASSAGE_MEAN, PASSAGE_MELNIKOV, PASSAGE_QUANTILE,
-    PASSAGE_SHARE, PASSAGE_SURVIVAL, SIGNAL_TO_NOISE, SPECTRAL_PEAK, TIME_STEP_BIAS,
-    TURN_DIFFUSION, VELOCITY,
+    PASSAGE_SHARE, PASSAGE_SURVIVAL, SIGNAL_TO_NOISE, SOJOURN, SPECTRAL_PEAK, TIME_SHARE,
+    TIME_STEP_BIAS, TURN_DIFFUSION, VELOCITY, VISITS,
 };
 use crate::density::Observable;
 use crate::figure::canvas::symbols;
 use crate::system::Family;
 
 /// Words of measures that the field calls otherwise than tables do.
-const TITLES: [(MeasureKind, &str); 18] = [
+const TITLES: [(MeasureKind, &str); 21] = [
     (PASSAGE_MEAN, "mean time"),
     (PASSAGE_DEVIATION, "standard deviation"),
     (PASSAGE_KRAMERS, "Kramers' rate"),
     (PASSAGE_MELNIKOV, "Mel'nikov's rate"),
     (PASSAGE_SURVIVAL, "probability to last longer than"),
     (PASSAGE_QUANTILE, "time quantile"),
+    (TIME_SHARE, "share of the time"),
+    (VISITS, "visits per unit of time"),
+    (SOJOURN, "mean time of a visit"),
     (PASSAGE_SHARE, "share that ends in"),
     (DEVIATION, "standard deviation"),
     (EXPONENT, "largest Lyapunov exponent"),
@@ -62,10 +65,12 @@ impl<'a> Named<'a> {
                 .iter()
                 .filter(move |(kind, _)| kind.follows == follows)
         };
-        let mut passages = self.family.questions.passages.iter();
-        let passage = passages.find_map(|one| {
-            let word = name.strip_prefix(&one.name)?.strip_prefix('_')?;
-            Some((plain(&one.name), word))
+        let questions = &self.family.questions;
+        let passages = questions.passages.iter().map(|one| &one.name);
+        let mut named = passages.chain(questions.visits.iter().map(|one| &one.name));
+        let passage = named.find_map(|one| {
+            let word = name.strip_prefix(one)?.strip_prefix('_')?;
+            Some((plain(one), word))
         });
         if let Some((passage, word)) = passage {
             let titled = titles(true).find_map(|(kind, title)| {
@@ -99,8 +104,9 @@ impl<'a> Named<'a> {
             let word = &after[..end];
             made += &symbols::unit(signs);
             made += &match symbol(word) {
+                // The phase of a force is an axis `t` as well.
+                _ if word == "t" => symbols::variable(word),
                 Some((_, symbol)) => symbol.clone(),
-                None if word == "t" => symbols::variable(word),
                 None => symbols::plain(word),
             };
             rest = &after[end..];

@@ -7,16 +7,17 @@ use crate::cancellation::Cancellation;
 use crate::continuation::{Finding, Measure, PassageFault, SolveReport, StateField};
 use crate::density::EstimatedDensity;
 use crate::generator::{GeneratorOptions, Reach};
-use crate::method::measures::{measures_of_passage, transition_measures};
+use crate::method::measures::{measures_of_passage, measures_of_visits, transition_measures};
 use crate::method::{GeneratorMethodOptions, MethodError, Problem};
 use crate::passage::{
     FieldTarget, KnownDensity, Passage, PassageError, PassageField, PassageMemory, Timed, field,
-    reactive, timed_from, timed_on_line, transitions_on_line,
+    reactive, timed_from, timed_on_line, transitions_on_line, visits,
 };
 use crate::space::CellSpace;
 use crate::stationary::generator::{RateError, RateOptions};
 use crate::system::{
-    FieldKind, FieldQuestion, Model, ParameterValues, PassageQuestion, PassageStart, Region, System,
+    FieldKind, FieldQuestion, Model, ParameterValues, PassageQuestion, PassageStart, Region,
+    System, VisitsQuestion,
 };
 
 /// Error at which times stop to be iterated, relative to their sum. Numbers have its square: they are put right by what
@@ -39,7 +40,9 @@ pub(super) fn add_passages(
     cancellation: &Cancellation,
 ) -> Result<(), MethodError> {
     let family = problem.family();
-    if family.questions.passages.is_empty() || problem.subject().measures.is_empty() {
+    let questions = &family.questions;
+    let is_asked = !(questions.passages.is_empty() && questions.visits.is_empty());
+    if !is_asked || problem.subject().measures.is_empty() {
         return Ok(());
     }
     let asked = Asked {
@@ -58,8 +61,11 @@ pub(super) fn add_passages(
         },
         cancellation,
     };
-    let questions = family.questions.passages.iter().zip(memory);
-    for (passage, (question, memory)) in questions.enumerate() {
+    for (number, question) in questions.visits.iter().enumerate() {
+        asked.add_visits(report, (number, question))?;
+    }
+    let passages = questions.passages.iter().zip(memory);
+    for (passage, (question, memory)) in passages.enumerate() {
         let mut faults = Vec::new();
         let numbers = if question.has_basins() {
             asked.numbers_of_basins(question, memory, family.model(), watched)?
@@ -115,6 +121,29 @@ struct Asked<'a> {
 type Answer<T> = Result<Result<T, PassageFault>, MethodError>;
 
 impl Asked<'_> {
+    /// Adds how often a region is visited, or a finding where that is not known.
+    fn add_visits(
+        &self,
+        report: &mut SolveReport,
+        (number, question): (usize, &VisitsQuestion),
+    ) -> Result<(), MethodError> {
+        let Some(density) = self.density else {
+            return Ok(());
+        };
+        let region = question.region.level().bind(&self.values)?;
+        let found = visits((self.system.as_ref(), self.space), &region, density);
+        if let Ok(found) = &found {
+            report.measures.extend(measures_of_visits(question, found));
+        }
+        if !found.as_ref().is_ok_and(|found| found.entries.is_some()) {
+            report.findings.push(Finding::NoVisits {
+                visits: number,
+                is_endless: found.is_ok_and(|found| found.is_endless),
+            });
+        }
+        Ok(())
+    }
+
     fn numbers(&self, question: &PassageQuestion, memory: &PassageMemory) -> Answer<Vec<Measure>> {
         let passage = Passage::bind(question, &self.values)?;
         let on_line = self.reach.and_then(|reach| timed_on_line(reach, &passage));

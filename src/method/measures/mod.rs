@@ -7,6 +7,7 @@ mod passage;
 mod rotation;
 mod slow_modes;
 mod spectra;
+mod visits;
 
 pub(crate) use passage::passage_columns;
 pub(super) use passage::{
@@ -14,6 +15,7 @@ pub(super) use passage::{
 };
 pub(super) use slow_modes::measures as measures_of_slow_modes;
 pub(super) use spectra::{measures as measures_of_spectrum, signal_to_noise};
+pub(super) use visits::measures as measures_of_visits;
 
 pub(super) use balance::broken;
 
@@ -109,6 +111,7 @@ impl DerivedMeasure {
 pub(crate) fn columns_of_family(family: &Family) -> Vec<MeasureColumn> {
     let passages = passage_columns(family).into_iter();
     let asked = passages.chain(slow_modes::columns(family));
+    let asked = asked.chain(visits::columns(family));
     let asked = asked.chain(spectra::columns(family));
     let columns = asked.chain(exponent_columns(family));
     let columns = columns.chain(rotation::rotation_columns(family));
@@ -128,6 +131,9 @@ pub(crate) fn questions_about(family: &Family, asked: &[MeasureLevel]) -> Questi
     });
     for passage in &mut questions.passages {
         passage.fields.clear();
+    }
+    if !visits::columns(family).any(is_it) {
+        questions.visits.clear();
     }
     if !slow_modes::columns(family).any(is_it) {
         questions.slow_modes = 0;

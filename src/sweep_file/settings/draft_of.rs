@@ -49,6 +49,7 @@ impl Settings {
             bins: self.bins_draft(),
             averaged: self.averaged(),
             regions: self.regions_draft(),
+            visits: self.visits_draft(),
             levels: self.levels_draft(),
             passages: self.passages_draft(),
             exponent: match self.family.questions.fixed_point {
@@ -160,14 +161,24 @@ impl Settings {
             .collect()
     }
 
+    fn visits_draft(&self) -> Vec<(String, String)> {
+        let visits = self.family.questions.visits.iter();
+        visits
+            .map(|one| (one.name.clone(), self.named(&one.region)))
+            .collect()
+    }
+
+    /// A region by its name, where it has one, or by its text.
+    fn named(&self, region: &Region) -> String {
+        let mut known = self.family.questions.regions.iter();
+        match known.any(|one| one.name() == region.name()) {
+            true => region.name().to_owned(),
+            false => region.text().to_owned(),
+        }
+    }
+
     fn passages_draft(&self) -> Vec<PassageDraft> {
-        let named = |region: &Region| {
-            let mut known = self.family.questions.regions.iter();
-            match known.any(|one| one.name() == region.name()) {
-                true => region.name().to_owned(),
-                false => region.text().to_owned(),
-            }
-        };
+        let named = |region: &Region| self.named(region);
         let axes = &self.family.model().axes;
         let passages = self.family.questions.passages.iter();
         let draft = passages.map(|one| PassageDraft {

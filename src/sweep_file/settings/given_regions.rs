@@ -1,9 +1,10 @@
 //! Regions as passages give them: by a name of `[regions]`, or as an inequality of their own.
 
 use crate::sweep_file::diagnostic::{Diagnostic, Place};
+use crate::sweep_file::draft::Draft;
 use crate::sweep_file::formula_place::inside;
 use crate::sweep_file::reader::Reader;
-use crate::system::{RegionError, RegionFault};
+use crate::system::{Model, Region, RegionError, RegionFault, regions};
 
 /// An inequality as it was given.
 pub(super) struct Given {
@@ -28,10 +29,21 @@ pub(super) fn region(
     (word, name): (&str, String),
     text: &str,
 ) -> usize {
+    region_at(reader, given, &["passage", passage, word], name, text)
+}
+
+/// The same of the key at a path.
+pub(super) fn region_at(
+    reader: &Reader<'_>,
+    given: &mut Vec<Given>,
+    path: &[&str],
+    name: String,
+    text: &str,
+) -> usize {
     if let Some(known) = given.iter().position(|one| one.name == text.trim()) {
         return known;
     }
-    let place = reader.place(&["passage", passage, word]);
+    let place = reader.place(path);
     let whole = &reader.document().root.place;
     given.push(Given {
         name,
@@ -40,6 +52,49 @@ pub(super) fn region(
         is_joined: false,
     });
     given.len() - 1
+}
+
+/// The regions with names.
+pub(super) fn named(reader: &Reader<'_>, draft: &Draft) -> Vec<Given> {
+    let mut given = Vec::new();
+    for entry in reader.entries(&["regions"]) {
+        if let Some((name, text)) = draft.regions.iter().find(|(name, _)| *name == entry.key) {
+            given.push(Given {
+                name: name.clone(),
+                text: text.clone(),
+                place: entry.node.place.clone(),
+                is_joined: false,
+            });
+        }
+    }
+    given
+}
+
+/// What inequalities are, of which the first `named` can be called by their names; `None` where something is wrong with
+/// one, which is reported.
+pub(super) fn read_all(
+    reader: &mut Reader<'_>,
+    model: &Model,
+    given: &[Given],
+    named: usize,
+) -> Option<Vec<Region>> {
+    let texts: Vec<(&str, &str)> = given
+        .iter()
+        .map(|one| (one.name.as_str(), one.text.as_str()))
+        .collect();
+    let errors = match regions(model, &texts) {
+        Ok(read) => return Some(read),
+        Err(errors) => errors,
+    };
+    let own = errors
+        .into_iter()
+        .filter(|error| !given[error.index].is_joined);
+    for error in own {
+        let one = (&given[error.index], &given[..named]);
+        let diagnostic = diagnostic(reader, one, &error);
+        reader.report(diagnostic);
+    }
+    None
 }
 
 /// The number of the region that is either of two.
@@ -70,7 +125,7 @@ pub(super) fn refuse(reader: &mut Reader<'_>, passage: &str, title: String, reme
 }
 
 /// What is wrong with an inequality, at its place; `named` are those that others can call by their names.
-pub(super) fn diagnostic(
+fn diagnostic(
     reader: &Reader<'_>,
     (one, named): (&Given, &[Given]),
     error: &RegionError,

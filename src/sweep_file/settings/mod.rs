@@ -25,6 +25,7 @@ mod spectrum;
 mod system;
 #[cfg(test)]
 mod tests;
+mod visits;
 mod walls;
 mod watched;
 
@@ -129,6 +130,7 @@ impl Settings {
         family = walls::read(&mut reader, &draft, family, &axes);
         (family.questions.regions, family.questions.passages) =
             passages::read(&mut reader, &draft, family.model(), &watched.observables);
+        family.questions.visits = visits::read(&mut reader, &draft, family.model());
         exponent::read(&mut reader, &draft, &mut family);
         family.questions.slow_modes = relaxation::read(&mut reader, &draft);
         family.questions.spectrum = spectrum::read(&mut reader, &draft, &family);

@@ -1,6 +1,6 @@
 //! Regions and questions of first passage as a file has them, with the place of everything that is wrong with them.
 
-use super::given_regions::{Given, diagnostic, is_basin, refuse, region};
+use super::given_regions::{Given, is_basin, named as named_regions, read_all, refuse, region};
 use super::passage_fields::{GivenField, fields, transitions};
 use crate::density::Observable;
 use crate::formula::language::check_name;
@@ -8,7 +8,7 @@ use crate::sweep_file::diagnostic::Diagnostic;
 use crate::sweep_file::draft::{Draft, MethodKind, PassageDraft};
 use crate::sweep_file::names::quotable;
 use crate::sweep_file::reader::Reader;
-use crate::system::{Model, PassageQuestion, PassageStart, Region, regions};
+use crate::system::{Model, PassageQuestion, PassageStart, Region};
 
 /// The word for a start that is spread as the steady state is.
 pub(super) const DENSITY: &str = "density";
@@ -20,17 +20,7 @@ pub(super) fn read(
     model: &Model,
     watched: &[Observable],
 ) -> (Vec<Region>, Vec<PassageQuestion>) {
-    let mut given = Vec::new();
-    for entry in reader.entries(&["regions"]) {
-        if let Some((name, text)) = draft.regions.iter().find(|(name, _)| *name == entry.key) {
-            given.push(Given {
-                name: name.clone(),
-                text: text.clone(),
-                place: entry.node.place.clone(),
-                is_joined: false,
-            });
-        }
-    }
+    let mut given = named_regions(reader, draft);
     let named = given.len();
     check_method(reader, draft);
     if model.phase_axis().is_some()
@@ -55,23 +45,8 @@ pub(super) fn read(
             asked.push((passage, ends));
         }
     }
-    let texts: Vec<(&str, &str)> = given
-        .iter()
-        .map(|one| (one.name.as_str(), one.text.as_str()))
-        .collect();
-    let read = match regions(model, &texts) {
-        Ok(read) => read,
-        Err(errors) => {
-            let own = errors
-                .into_iter()
-                .filter(|error| !given[error.index].is_joined);
-            for error in own {
-                let one = (&given[error.index], &given[..named]);
-                let diagnostic = diagnostic(reader, one, &error);
-                reader.report(diagnostic);
-            }
-            return (Vec::new(), Vec::new());
-        }
+    let Some(read) = read_all(reader, model, &given, named) else {
+        return (Vec::new(), Vec::new());
     };
     let questions = asked.into_iter().map(
         |(

@@ -1,0 +1,102 @@
+//! How often regions are visited and for how long, against Rice's formula with the exact density of an oscillator whose
+//! damping and noise balance: p = exp(-(U + v²/2)/T) up to a factor.
+
+use crate::common::sweeps::{measure, solved};
+
+/// x'' = -g x' - U'(x) + √(2 g T) ξ with U = k x²/2 + b x⁴/4.
+fn text(cells: &str, visits: &str) -> String {
+    format!(
+        "[system.equations]\nx = \"v\"\nv = \"-g v - k x - b x^3\"\n[system.noise]\nv = \"sqrt(2 g T)\"\n\
+         [system.parameters]\ng = 0.4\nk = -1\nb = 1\nT = 0.3\n\
+         [sweep]\nparameter = \"T\"\nfrom = 0.2\nto = 0.3\npoints = 2\n[cells]\n{cells}\n[visits]\n{visits}\n"
+    )
+}
+
+/// Probability of each of some intervals of x, and how often the ends of all of them are passed one way, by quadrature.
+fn exact(
+    temperature: f64,
+    (k, b): (f64, f64),
+    inside: impl Fn(f64) -> bool,
+    ends: &[f64],
+) -> [f64; 2] {
+    let weight = |x: f64| (-(0.5 * k * x * x + 0.25 * b * x.powi(4)) / temperature).exp();
+    let (count, reach) = (400_000, 6.0);
+    let step = 2.0 * reach / f64::from(count);
+    let (mut whole, mut part) = (0.0, 0.0);
+    for number in 0..count {
+        let x = -reach + (f64::from(number) + 0.5) * step;
+        whole += step * weight(x);
+        part += if inside(x) { step * weight(x) } else { 0.0 };
+    }
+    let speed = (temperature / std::f64::consts::TAU).sqrt();
+    let crossings: f64 = ends.iter().map(|&end| speed * weight(end) / whole).sum();
+    [part / whole, crossings]
+}
+
+#[test]
+fn an_oscillator_visits_wells_and_bands_as_often_as_rice_says() {
+    let visits = "right = \"x > 0\"\nhigh = \"x > 1.2\"\nband = \"-0.4 < x < 0.9\"\n\
+                  slanted = \"2 x + 0.3 > 0.5\"";
+    for (cells, largest) in [("x = 40\nv = 44", 0.02), ("x = 90\nv = 70", 0.003)] {
+        let (_, solution) = solved(&text(cells, visits), "", None);
+        let of = |name: &str, exact: [f64; 2]| {
+            let all = [
+                ("time_share", exact[0]),
+                ("visits", exact[1]),
+                ("sojourn", exact[0] / exact[1]),
+            ];
+            for (word, exact) in all {
+                let (value, error) = measure(&solution, &format!("{name}_{word}"));
+                let off = (value - exact).abs();
+                assert!(off <= error, "{name}_{word}, {cells}: {off:e} of {error:e}");
+                assert!(
+                    error <= largest * exact,
+                    "{name}_{word}, {cells}: {error:e}"
+                );
+            }
+        };
+        let exact = |inside: fn(f64) -> bool, ends: &[f64]| exact(0.3, (-1.0, 1.0), inside, ends);
+        of("right", exact(|x| x > 0.0, &[0.0]));
+        of("high", exact(|x| x > 1.2, &[1.2]));
+        of("band", exact(|x| -0.4 < x && x < 0.9, &[-0.4, 0.9]));
+        of("slanted", exact(|x| x > 0.1, &[0.1]));
+    }
+}
+
+#[test]
+fn a_region_across_whose_border_noise_acts_is_entered_infinitely_often() {
+    let visits = "fast = \"v > 0.5\"\nnowhere = \"x > 80\"";
+    let (sweep, solution) = solved(&text("x = 40\nv = 40", visits), "", None);
+    let (share, error) = measure(&solution, "fast_time_share");
+    // P(v > 0.5) of a normal density of variance 0.3: erfc(0.5/√0.6)/2.
+    let exact = 0.180_655_2;
+    assert!((share - exact).abs() <= error + 1e-7 && error < 0.01);
+    let has = |name: &str| solution.report.measures.iter().any(|one| one.name == name);
+    assert!(!has("fast_visits") && !has("fast_sojourn") && !has("nowhere_visits"));
+    let family = sweep.problem.family();
+    let findings = solution.report.findings.iter();
+    let words: Vec<String> = findings
+        .map(|one| pbif::run::finding_in_words(family, one))
+        .collect();
+    let words = words.join("; ");
+    assert!(words.contains("noise acts across its border"), "{words}");
+    assert!(words.contains("`nowhere`"), "{words}");
+}
+
+#[test]
+fn what_filtered_noise_moves_has_visits_on_one_line() {
+    // x' = -x + z with z an Ornstein-Uhlenbeck process: x is normal with variance D/(1 + τ), its derivative with
+    // variance D/(τ (1 + τ)).
+    let (d, tau) = (0.5, 0.4_f64);
+    let text = format!(
+        "[system.equations]\nx = \"-x + z\"\nz = \"-z/tau\"\n[system.noise]\nz = \"sqrt(2 D)/tau\"\n\
+         [system.parameters]\ntau = {tau}\nD = {d}\n[sweep]\nparameter = \"D\"\nfrom = 0.3\nto = {d}\npoints = 2\n\
+         [cells]\nx = 50\nz = 50\n[visits]\nhigh = \"x > 0.6\"\n"
+    );
+    let (_, solution) = solved(&text, "", None);
+    let variance = d / (1.0 + tau);
+    let exact = (1.0 / tau).sqrt() / std::f64::consts::TAU * (-0.18 / variance).exp();
+    let (rate, error) = measure(&solution, "high_visits");
+    let off = (rate - exact).abs();
+    assert!(off <= error && error < 0.01 * exact, "{off:e} of {error:e}");
+}
