@@ -84,6 +84,24 @@ impl Transitions {
     ///
     /// The error of sampling is that of a jackknife that leaves out one trajectory at a time.
     pub fn numbers(&self) -> [ExitNumber; 3] {
+        self.numbers_by(numbers_of)
+    }
+
+    /// Of two regions that are all there is, visits of the second one: the share of the time that is spent in it, how
+    /// often it is entered per unit of time, and the mean time of a visit; with errors as those of
+    /// [`Transitions::numbers`].
+    pub fn visits(&self) -> [ExitNumber; 3] {
+        self.numbers_by(|tally| {
+            let inside = tally.time - tally.from_last;
+            vec![
+                inside / tally.time,
+                tally.transitions / tally.time,
+                inside / tally.transitions,
+            ]
+        })
+    }
+
+    fn numbers_by(&self, numbers_of: impl Fn(&TransitionCounts) -> Vec<f64>) -> [ExitNumber; 3] {
         let none = TransitionCounts::default();
         let totals = self.tallies.iter().fold([none; 2], |sums, pair| {
             [0, 1].map(|with| sums[with].plus(1.0, &pair[with]))

@@ -108,6 +108,11 @@ pub fn visits(
     })
 }
 
+/// Whether noise acts across the border of a region somewhere within the cells, so that it is crossed infinitely often.
+pub(crate) fn is_endless(on: (&dyn System, &CellSpace), region: &BoundQuantity) -> bool {
+    Border::new(on, region, 1).is_endless
+}
+
 /// A state on the border.
 struct Crossing {
     state: [f64; MAX_DIMENSION],

@@ -20,10 +20,11 @@ pub(crate) fn format_number(value: f64) -> String {
 const LARGEST_IN_DIGITS: f64 = 1e6;
 
 /// A value and its error, both to the error's second significant digit, for example `("-0.0123", "0.0045")`.
-/// Without an error the value is given in full.
+/// Without an error the value is given to twelve digits: the last ones of a value of a sweep are rounding.
 pub(crate) fn format_with_error(value: f64, error: f64) -> (String, String) {
     if !(error > 0.0 && error.is_finite() && value.is_finite()) {
-        return (format_number(value), format_number(error));
+        let rounded = format!("{value:.11e}").parse().unwrap_or(value);
+        return (format_number(rounded), format_number(error));
     }
     if error >= LARGEST_IN_DIGITS || value.abs() >= LARGEST_IN_DIGITS * LARGEST_IN_DIGITS {
         let digits = (value.abs() / error).log10().floor() + 1.0;
@@ -58,6 +59,7 @@ mod tests {
         assert_eq!(pair(12.0, 3.0), ("12.0".into(), "3.0".into()));
         assert_eq!(pair(-1e-9, 0.01), ("0.000".into(), "0.010".into()));
         assert_eq!(pair(0.5, 0.0), ("0.5".into(), "0".into()));
+        assert_eq!(pair(-0.6 + 23.0 / 64.0, 0.0).0, "-0.240625");
         assert_eq!(pair(5.43e35, 7.5e34), ("5.4e35".into(), "7.5e34".into()));
         assert_eq!(pair(-2.0, 7.53e34), ("-2e0".into(), "7.5e34".into()));
         assert_eq!(pair(123456.0, 200.0), ("123456".into(), "200".into()));

@@ -32,6 +32,8 @@ pub struct VisitsQuestion {
     pub name: String,
     /// The region.
     pub region: Region,
+    /// What lies outside of it.
+    pub outside: Region,
 }
 
 impl PassageQuestion {

@@ -175,8 +175,8 @@ fn visits_that_have_no_numbers_are_refused_with_a_way_out() {
     );
     refused("visits.high=2", &["`visits.high`", "string"]);
     refused(
-        "method.kind=\"monte-carlo\"",
-        &["visits are worked out by `generator`"],
+        "method.kind=\"sgcm\"",
+        &["visits are worked out by `generator` and `monte-carlo`"],
     );
     let line = "[system.equations]\nx = \"x - x^3\"\n[system.noise]\nx = \"sqrt(2 D)\"\n[system.parameters]\nD = 0.2\n\
                 [sweep]\nparameter = \"D\"\nfrom = 0.1\nto = 0.2\npoints = 2\n";

@@ -100,3 +100,31 @@ fn what_filtered_noise_moves_has_visits_on_one_line() {
     let off = (rate - exact).abs();
     assert!(off <= error && error < 0.01 * exact, "{off:e} of {error:e}");
 }
+
+#[test]
+fn trajectories_visit_a_well_as_often_as_rice_says() {
+    let visits = "right = \"x > 0\"\nhigh = \"x > 1.2\"\nfast = \"v > 0.5\"";
+    let sampled = text("x = 40\nv = 44", visits);
+    let (_, solution) = solved(
+        &sampled,
+        "method.kind=\"monte-carlo\" method.passages=4000",
+        None,
+    );
+    let of = |name: &str, [share, rate]: [f64; 2]| {
+        let all = [
+            ("time_share", share),
+            ("visits", rate),
+            ("sojourn", share / rate),
+        ];
+        for (word, exact) in all {
+            let (value, error) = measure(&solution, &format!("{name}_{word}"));
+            let off = (value - exact).abs();
+            assert!(off <= 3.0 * error, "{name}_{word}: {off:e} of {error:e}");
+            assert!(error <= 0.1 * exact, "{name}_{word}: {error:e}");
+        }
+    };
+    of("right", exact(0.3, (-1.0, 1.0), |x| x > 0.0, &[0.0]));
+    of("high", exact(0.3, (-1.0, 1.0), |x| x > 1.2, &[1.2]));
+    let mut all = solution.report.measures.iter();
+    assert!(all.all(|one| !one.name.starts_with("fast")));
+}

@@ -9,6 +9,7 @@ mod source;
 mod transitions;
 #[cfg(test)]
 pub(in crate::method) mod turns_tests;
+mod visits;
 
 pub(crate) use cost::MonteCarloCost;
 pub use options::{Estimator, MonteCarloOptions};

@@ -178,6 +178,7 @@ impl MonteCarloSource {
         };
         let is_steady = solution.report.status.is_resolved();
         setting.add_passages(&mut solution.report, at, is_steady, cancellation)?;
+        setting.add_visits(&mut solution.report, at, is_steady, cancellation)?;
         Ok((solution, found))
     }
 

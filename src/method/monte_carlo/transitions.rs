@@ -5,12 +5,12 @@ use super::passages::{FEWEST, Setting};
 use crate::cancellation::Cancellation;
 use crate::continuation::PassageFault;
 use crate::method::{MethodError, StepChoice};
-use crate::monte_carlo::{ExitNumber, TransitionRun, transitions};
+use crate::monte_carlo::{ExitNumber, TransitionRun, Transitions, transitions};
 use crate::passage::{Passage, PassageError, Start, are_apart};
-use crate::system::System;
+use crate::system::{BoundQuantity, System};
 
 /// Flux, rate and mean time on the way, or why there are none.
-type Counted = Result<[ExitNumber; 3], PassageFault>;
+pub(super) type Counted = Result<[ExitNumber; 3], PassageFault>;
 
 impl Setting<'_> {
     /// Counts as many transitions as a passage has paths, within the steps of a passage; with shorter steps as long as
@@ -22,7 +22,6 @@ impl Setting<'_> {
         is_steady: bool,
         cancellation: &Cancellation,
     ) -> Result<Counted, MethodError> {
-        let (options, plan, space) = (self.options, self.plan, self.problem.space());
         let Start::Density(Some(from)) = &asked.start else {
             return Ok(Err(PassageFault::NoDensity));
         };
@@ -31,9 +30,21 @@ impl Setting<'_> {
         }
         let regions = [from, &asked.until];
         // Trajectories see regions that no cell is in as well.
-        if let Err(PassageError::Overlap) = are_apart(space, regions) {
+        if let Err(PassageError::Overlap) = are_apart(self.problem.space(), regions) {
             return Ok(Err(PassageFault::Overlap));
         }
+        self.counted(system, regions, Transitions::numbers, cancellation)
+    }
+
+    /// Numbers of the transitions from the first of two regions to the second.
+    pub(super) fn counted(
+        &self,
+        system: &dyn System,
+        regions: [&BoundQuantity; 2],
+        numbers: impl Fn(&Transitions) -> [ExitNumber; 3],
+        cancellation: &Cancellation,
+    ) -> Result<Counted, MethodError> {
+        let (options, plan, space) = (self.options, self.plan, self.problem.space());
         // All pairs of trajectories together last as long as the paths of a passage may.
         let steps = |longest: f64| (3 * options.passages) as f64 * longest / plan.time_step;
         let most_steps = match options.longest_passage {
@@ -54,7 +65,7 @@ impl Setting<'_> {
             if found.runaways() > 0 {
                 return Ok(Err(PassageFault::RunsAway));
             }
-            let numbers = found.numbers();
+            let numbers = numbers(&found);
             let errors = numbers.iter().map(ExitNumber::error);
             if found.count() < FEWEST || errors.into_iter().any(|error| !error.is_finite()) {
                 return Ok(Err(PassageFault::Rare));

@@ -13,11 +13,10 @@ pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, model: &Model) -> Vec
     let Some((first, _)) = draft.visits.first() else {
         return Vec::new();
     };
-    let refused = if draft.method.kind != MethodKind::Generator {
-        let name = draft.method.kind.name();
+    let refused = if draft.method.kind == MethodKind::Sgcm {
         Some((
-            format!("visits are worked out by `generator`, not by `{name}`"),
-            "set `method.kind = \"generator\"`, or leave `[visits]` out",
+            "visits are worked out by `generator` and `monte-carlo`, not by `sgcm`".to_owned(),
+            "set `method.kind = \"generator\"`, or `\"monte-carlo\"`",
         ))
     } else if model.axes.len() < 2 {
         Some((
@@ -50,17 +49,27 @@ pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, model: &Model) -> Vec
             );
         } else {
             let own = format!("{name}_visits");
-            let number = region_at(reader, &mut given, &["visits", name], own, text);
-            asked.push((name, number));
+            let path = ["visits", name];
+            let inside = region_at(reader, &mut given, &path, own, text);
+            let (out, text) = (
+                format!("{name}_outside"),
+                format!("not ({})", given[inside].text),
+            );
+            let outside = region_at(reader, &mut given, &path, out, &text);
+            given[outside].is_joined = true;
+            asked.push((name, inside, outside));
         }
     }
     let Some(read) = read_all(reader, model, &given, count) else {
         return Vec::new();
     };
-    let questions = asked.into_iter().map(|(name, number)| VisitsQuestion {
-        name: name.clone(),
-        region: read[number].clone(),
-    });
+    let questions = asked
+        .into_iter()
+        .map(|(name, inside, outside)| VisitsQuestion {
+            name: name.clone(),
+            region: read[inside].clone(),
+            outside: read[outside].clone(),
+        });
     questions.collect()
 }
 
