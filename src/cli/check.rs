@@ -158,6 +158,13 @@ fn monte_carlo_costs(spec: &Sweep, cost: &MonteCarloCost) -> Vec<String> {
             ));
         }
     }
+    let visits = spec.problem.family().questions.visits.len();
+    if visits > 0 {
+        let paths = spec.settings.method.monte_carlo.passages;
+        costs.push(format!(
+            "visits: of {visits} regions a point, until {paths} are counted each"
+        ));
+    }
     costs
 }
 
