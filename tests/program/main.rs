@@ -32,4 +32,5 @@ mod relaxation;
 mod spectra;
 mod sweep;
 mod systems;
+mod thin_regions;
 mod told_early;
