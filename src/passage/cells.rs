@@ -42,7 +42,8 @@ pub(super) struct PassageCells {
 /// `parts` are the levels of parts of that region that are told apart, if there are any.
 ///
 /// # Errors
-/// [`PassageError::Nowhere`], [`PassageError::Everywhere`] and [`PassageError::Between`], errors of the level, and of the cells.
+/// [`PassageError::Nowhere`], [`PassageError::Everywhere`] and [`PassageError::Between`]; errors of the level, and
+/// of the cells.
 pub(super) fn cells(
     system: &dyn System,
     space: &CellSpace,

@@ -16,6 +16,7 @@ mod check;
 mod compare;
 mod composition;
 mod detect;
+mod early_passages;
 mod editor;
 mod explorer;
 mod exponents;
