@@ -267,6 +267,8 @@ pub enum Finding {
 pub enum PassageFault {
     /// No cell is inside the region that is waited for.
     Nowhere,
+    /// A part of that region lies between the nodes of the cells.
+    Between,
     /// All cells are.
     Everywhere,
     /// The start is inside that region, outside of the cells, or never visited.

@@ -6,6 +6,7 @@
 //! the same of the bridge with its time turned round.
 
 use super::batch::{Limits, Purpose};
+use super::passing::Passing;
 use super::walk::{Border, Chance, Meeting, StepLevels};
 use crate::sampling::Stepper;
 use crate::system::{LANES, Lanes};
@@ -71,6 +72,8 @@ pub(super) struct Crossings<'a> {
     states: Vec<Lanes>,
     /// Levels of both regions.
     seen: [Levels; 2],
+    /// Which trajectories have passed through either region in the step that is being made.
+    passing: [[Option<Passing>; LANES]; 2],
     /// Probability that a region was not met since random numbers were used up, and how many were.
     unmet: [Lanes; 2],
     drawn: [[u8; LANES]; 2],
@@ -97,6 +100,7 @@ impl<'a> Crossings<'a> {
             stepper,
             time_step,
             states,
+            passing: [const { [const { None }; LANES] }; 2],
             unmet: [[1.0; LANES]; 2],
             drawn: [[0; LANES]; 2],
             region: [None; LANES],
@@ -127,9 +131,14 @@ impl<'a> Crossings<'a> {
     }
 
     pub(super) fn step(&mut self, normals: &[Lanes], chances: &Chances) {
+        let states = self.states.clone();
         self.stepper.advance_with(&mut self.states, 0, 1, normals);
         let before = self.seen;
         self.seen = [FROM, TO].map(|region| self.borders[region].at(&self.states));
+        self.passing = [FROM, TO].map(|region| {
+            let levels = [&before[region].0, &self.seen[region].0];
+            self.borders[region].passing([&states, &self.states], levels)
+        });
         let near = [FROM, TO].map(|region| self.near(&before, region));
         for (lane, near_from) in near[FROM].into_iter().enumerate() {
             let waits_for_second = self.region[lane] != Some(TO);
@@ -171,7 +180,8 @@ impl<'a> Crossings<'a> {
         let unit = 0.5 * NEVER * self.time_step;
         std::array::from_fn(|lane| {
             let is_far = from[lane] * to[lane] >= unit * speeds[lane] * next_speeds[lane];
-            from[lane] < 0.0 || to[lane] < 0.0 || !is_far
+            let passes = self.passing[region][lane].is_some();
+            from[lane] < 0.0 || to[lane] < 0.0 || !is_far || passes
         })
     }
 
@@ -207,6 +217,19 @@ impl<'a> Crossings<'a> {
                 last: 1.0,
             }),
             (false, false) => {
+                if let Some(passing) = &self.passing[region][lane] {
+                    let chance = chances.of(lane, region, *drawn);
+                    (*unmet, *drawn) = (1.0, *drawn + 1);
+                    let [after, first] = passing.beyond;
+                    let last = ends.backward(at(&self.seen[region]), first);
+                    return Some(Meeting {
+                        first: ends
+                            .onward(at(&before[region]), after)
+                            .meeting(&chance)
+                            .first,
+                        last: last.meeting(&chance).last,
+                    });
+                }
                 let factor = ends.unmet();
                 if factor == 1.0 {
                     return None;

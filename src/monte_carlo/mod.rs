@@ -21,6 +21,7 @@ mod estimate;
 mod exit_times;
 mod halving;
 mod passage;
+mod passing;
 mod path;
 mod phases;
 mod relaxation;

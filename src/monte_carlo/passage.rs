@@ -237,9 +237,13 @@ mod tests {
 
     /// Mean time of Brownian motion from the middle of (-1, 1) until it is out, which is 1.
     fn mean(is_bridged: bool) -> (ExitTimes, crate::monte_carlo::ExitNumber) {
+        mean_until("abs(x) > 1", is_bridged)
+    }
+
+    fn mean_until(region: &str, is_bridged: bool) -> (ExitTimes, crate::monte_carlo::ExitNumber) {
         let model = TypedModel::new("free", "Free", vec!["x"]).with_equation("x", "0 x");
         let model = model.with_noise("x", ["1"]).build().unwrap();
-        let region = regions(&model, &[("out", "abs(x) > 1")]).unwrap().remove(0);
+        let region = regions(&model, &[("out", region)]).unwrap().remove(0);
         let until = region.level().bind(&model.values(&[]).unwrap()).unwrap();
         let space = CellSpace::new(vec![Axis::uniform(-2.0, 2.0, 10).unwrap()]).unwrap();
         let system = model.system_with(&[]).unwrap();
@@ -269,6 +273,19 @@ mod tests {
             seed: 5,
             paths: 16_384,
             longest: 50.0,
+        }
+    }
+
+    #[test]
+    fn a_strip_that_single_steps_pass_through_ends_paths() {
+        // The mean time out of (-1, 0.5) from 0 is 1 · 0.5, however thin the strip at 0.5 is.
+        for width in [0.1, 0.01, 1e-4] {
+            let region = format!("0.5 < x < {} or x < -1", 0.5 + width);
+            let (_, found) = mean_until(&region, true);
+            assert!(
+                (found.value - 0.5).abs() < 3.0 * found.error() && found.error() < 0.01,
+                "{width}: {found:?}"
+            );
         }
     }
 

@@ -36,6 +36,8 @@ pub(super) struct Border<'a> {
     exits: &'a [BoundQuantity],
     /// Axes with noise on which the level depends, and how far a state is moved along each to see its slope.
     pub(super) noisy: Vec<(usize, f64)>,
+    /// Whether the level depends on one axis alone, so that whatever comes to the other side passes through the region.
+    pub(super) is_of_one_axis: bool,
 }
 
 impl<'a> Border<'a> {
@@ -50,6 +52,7 @@ impl<'a> Border<'a> {
             noisy: noisy
                 .map(|(number, (axis, _))| (number, SLOPE * (axis.to() - axis.from())))
                 .collect(),
+            is_of_one_axis: until.states().iter().filter(|matters| **matters).count() == 1,
             system,
             until,
             exits,
@@ -159,6 +162,27 @@ impl StepLevels {
         }
     }
 
+    /// The same levels with another one at the end, as the tangent at the beginning has it: where a step passes through
+    /// the region, its border is met as if all behind it were inside.
+    pub(super) fn onward(&self, (_, speed): (f64, f64), beyond: f64) -> Self {
+        let unit = if self.variance > 0.0 { speed } else { 1.0 };
+        Self {
+            before: self.before,
+            after: beyond / unit,
+            variance: self.variance,
+        }
+    }
+
+    /// The same levels with another one at the beginning, as the tangent at the end has it.
+    pub(super) fn backward(&self, (_, speed): (f64, f64), beyond: f64) -> Self {
+        let unit = if self.variance > 0.0 { speed } else { 1.0 };
+        Self {
+            before: beyond / unit,
+            after: self.after,
+            variance: self.variance,
+        }
+    }
+
     /// Probability that a path which is outside at both ends was not inside between them.
     pub(super) fn unmet(&self) -> f64 {
         if self.variance > 0.0 {
@@ -228,9 +252,12 @@ impl<'a> Walk<'a> {
     }
 
     pub(super) fn step(&mut self, normals: &[Lanes], chances: &[Chance; LANES]) {
+        let states = self.states.clone();
         self.stepper.advance_with(&mut self.states, 0, 1, normals);
         let before = (self.levels, self.speeds);
         self.look();
+        let ends = [states.as_slice(), &self.states];
+        let passing = self.border.passing(ends, [&before.0, &self.levels]);
         for (lane, chance) in chances.iter().enumerate() {
             if !self.going[lane] {
                 continue;
@@ -239,11 +266,14 @@ impl<'a> Walk<'a> {
             let to = (self.levels[lane], self.speeds[lane]);
             let ends = StepLevels::new(from, to, self.time_step);
             self.unmet[lane] *= ends.unmet();
-            if to.0 < 0.0 || self.unmet[lane] < chance.unmet {
-                let share = ends.meeting(chance).first;
+            let passed = passing[lane].as_ref();
+            if to.0 < 0.0 || self.unmet[lane] < chance.unmet || passed.is_some() {
+                let onward = passed.map(|passed| ends.onward(from, passed.beyond[0]));
+                let share = onward.unwrap_or(ends).meeting(chance).first;
                 self.going[lane] = false;
                 if self.border.exits.len() > 1 {
-                    let state: Vec<f64> = self.states.iter().map(|lanes| lanes[lane]).collect();
+                    let end = || self.states.iter().map(|lanes| lanes[lane]).collect();
+                    let state: Vec<f64> = passed.map_or_else(end, |passed| passed.state.clone());
                     self.exits[lane] = self.border.exit(&state);
                 }
                 self.times[lane] = (self.ages[lane] as f64 + share) * self.time_step;

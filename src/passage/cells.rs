@@ -6,7 +6,10 @@
 //! (T as the square root of the velocity), and cells of even width converge slowly, whatever the scheme. The axis ends
 //! at such a border, and its cells are graded as the cube of the distance from it.
 
+use std::iter;
+
 use super::PassageError;
+use super::pocket::has_pocket;
 use crate::generator::levels;
 use crate::numerics::{bisected, narrowed};
 use crate::space::{Axis, CellSpace, Grading};
@@ -36,13 +39,15 @@ pub(super) struct PassageCells {
 }
 
 /// Finds the cells of a passage that ends where `level` is negative, `factor` times as many an axis as the space has.
+/// `parts` are the levels of parts of that region that are told apart, if there are any.
 ///
 /// # Errors
-/// [`PassageError::Nowhere`] and [`PassageError::Everywhere`], errors of the level, and of the cells.
+/// [`PassageError::Nowhere`], [`PassageError::Everywhere`] and [`PassageError::Between`]; errors of the level, and
+/// of the cells.
 pub(super) fn cells(
     system: &dyn System,
     space: &CellSpace,
-    level: &BoundQuantity,
+    (level, parts): (&BoundQuantity, &[BoundQuantity]),
     factor: f64,
 ) -> Result<PassageCells, PassageError> {
     let levels = levels(space, level)?;
@@ -95,10 +100,13 @@ pub(super) fn cells(
         });
     }
     grade_beside_barriers(system, &mut axes, &borders)?;
-    Ok(PassageCells {
-        space: CellSpace::new(axes)?,
-        borders,
-    })
+    let space = CellSpace::new(axes)?;
+    for region in iter::once(level).chain(parts) {
+        if has_pocket(&space, region)? {
+            return Err(PassageError::Between);
+        }
+    }
+    Ok(PassageCells { space, borders })
 }
 
 /// Even cells with a face on each border, and some beyond it, so that what cells do changes evenly with their number;

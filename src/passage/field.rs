@@ -164,7 +164,8 @@ impl FieldQuestion<'_> {
         factor: f64,
     ) -> Result<(PassageCells, [AbsorbingGenerator; 3]), PassageError> {
         let until = &self.target.until;
-        let found = cells(self.system.as_ref(), self.space, until, factor)?;
+        let regions = (until, self.target.exits.as_slice());
+        let found = cells(self.system.as_ref(), self.space, regions, factor)?;
         let enclosed = enclosed(self.system, &found);
         let assemble = |dissipation, closure| {
             let scheme = (dissipation, closure);

@@ -72,6 +72,7 @@ mod moments;
 mod near_border;
 mod on_line;
 mod on_way;
+mod pocket;
 mod quasi_stationary;
 mod rate;
 mod reactive;
@@ -181,6 +182,9 @@ pub enum PassageError {
         "no cell is inside the region that is waited for: it lies outside of the cells, or is thinner than one"
     )]
     Nowhere,
+    /// A part of the target lies between the nodes of the cells.
+    #[error("a part of the region that is waited for lies between the nodes of the cells")]
+    Between,
     /// All cells are inside the target.
     #[error("all cells are inside the region that is waited for")]
     Everywhere,

@@ -1,6 +1,7 @@
 //! First passages on one axis, from the chain that its motion is (`generator::chain`): a line with a place on every
 //! border, on which mean times are exact but for the quadrature.
 
+use super::pocket::pockets_on_line;
 use super::{Passage, PassageError, Start, Timed, WithError, near_border};
 use crate::generator::{Chain, MESH_DEPTH, MESH_PLACES, Mesh, Reach, Reduced};
 use crate::numerics::{bisected, narrowed};
@@ -28,8 +29,14 @@ impl Bordered {
     /// The line of a system with places on the borders of regions (negative inside) and at `more` places; `None` where
     /// it has no end.
     fn new(reach: &Reach<'_>, regions: &[&BoundQuantity], more: &[f64]) -> Option<Self> {
-        let rough = reach.mesh(MESH_PLACES, MESH_DEPTH, more)?;
+        let mut rough = reach.mesh(MESH_PLACES, MESH_DEPTH, more)?;
+        let all_pockets = |region: &&BoundQuantity| pockets_on_line(&rough.places, region);
+        let pockets: Vec<f64> = regions.iter().flat_map(all_pockets).collect();
         let mut breaks = more.to_vec();
+        if !pockets.is_empty() {
+            breaks.extend(pockets);
+            rough = reach.mesh(MESH_PLACES, MESH_DEPTH, &breaks)?;
+        }
         for region in regions {
             let inside: Vec<bool> = is_inside(region, &rough.places);
             for (places, sides) in rough.places.windows(2).zip(inside.windows(2)) {

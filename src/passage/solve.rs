@@ -57,7 +57,8 @@ impl Question<'_> {
         memory: &GridMemory,
     ) -> Result<Solved, PassageError> {
         let until = &self.passage.until;
-        let found = cells(self.system.as_ref(), self.space, until, factor)?;
+        let regions = (until, self.passage.exits.as_slice());
+        let found = cells(self.system.as_ref(), self.space, regions, factor)?;
         let enclosed = enclosed(self.system, &found);
         let space = found.space;
         let (system, options) = (&enclosed, self.options);

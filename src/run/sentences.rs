@@ -327,6 +327,9 @@ fn passage_in_words(family: &Family, passage: usize, fault: PassageFault) -> Str
         PassageFault::Nowhere => {
             "no cell is inside the region that is waited for: widen the ranges until it is, or use more cells, unless the region is empty at this value"
         }
+        PassageFault::Between => {
+            "a part of a region that ends it lies between the nodes of the cells, which would never meet it: use more cells, or ask Monte Carlo"
+        }
         PassageFault::Everywhere => {
             "all cells are inside the region that is waited for, or inside the two of its transitions, which touch: there is nothing to wait for"
         }

@@ -132,8 +132,9 @@ stored! {
 
 impl PassageFault {
     /// All of them, with their codes.
-    pub(super) const CODES: [(Self, &'static str); 12] = [
+    pub(super) const CODES: [(Self, &'static str); 13] = [
         (Self::Nowhere, "passage-nowhere"),
+        (Self::Between, "passage-between"),
         (Self::Everywhere, "passage-everywhere"),
         (Self::Start, "passage-start"),
         (Self::NoDensity, "passage-no-density"),

@@ -295,6 +295,7 @@ fn with_moved_ends(all: Vec<Vec<Measure>>) -> Vec<Measure> {
 fn fault(error: &PassageError) -> PassageFault {
     match error {
         PassageError::Nowhere => PassageFault::Nowhere,
+        PassageError::Between => PassageFault::Between,
         PassageError::Everywhere => PassageFault::Everywhere,
         PassageError::Start => PassageFault::Start,
         PassageError::NoDensity => PassageFault::NoDensity,
