@@ -113,11 +113,35 @@ impl CellLookup {
     /// Cells of a batch; the sink's number for states outside Ω and those that are not numbers.
     #[inline(always)]
     pub(crate) fn find(&self, states: &[[f64; LANES]], cells: &mut [usize; LANES]) {
+        self.find_along(states, cells, |_, _, _| {});
+    }
+
+    /// The same, with the position along each axis of each state, that of the nearest cell beyond Ω.
+    #[inline(always)]
+    pub(super) fn find_positions(
+        &self,
+        states: &[[f64; LANES]],
+        cells: &mut [usize; LANES],
+        positions: &mut [[usize; LANES]],
+    ) {
+        self.find_along(states, cells, |axis, lane, cell| {
+            positions[axis][lane] = cell
+        });
+    }
+
+    #[inline(always)]
+    fn find_along(
+        &self,
+        states: &[[f64; LANES]],
+        cells: &mut [usize; LANES],
+        mut tell: impl FnMut(usize, usize, usize),
+    ) {
         cells.fill(0);
         let mut outside = [false; LANES];
-        for (lanes, (axis, stride)) in states.iter().zip(&self.axes) {
+        for (number, (lanes, (axis, stride))) in states.iter().zip(&self.axes).enumerate() {
             for lane in 0..LANES {
                 let (cell, inside) = axis.find(lanes[lane]);
+                tell(number, lane, cell);
                 cells[lane] += stride * cell;
                 outside[lane] |= !inside;
             }

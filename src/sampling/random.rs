@@ -67,6 +67,11 @@ impl NormalStream {
         Self { state }
     }
 
+    /// Begins anew as the stream of a key.
+    pub(crate) fn restart(&mut self, key: StreamKey) {
+        seed_lanes(key.word(), &mut self.state.0);
+    }
+
     /// Fills rows of standard normals. Numbers come in pairs of rows: after an odd number of rows the second
     /// half of the last pair is dropped.
     pub(crate) fn fill(&mut self, normals: &mut [Lanes]) {
