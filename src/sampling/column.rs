@@ -167,8 +167,8 @@ impl<'a> ColumnSampler<'a> {
                 .find_positions(&seen, &mut found, &mut positions);
             let sink = self.lookup.n_cells();
             let inside = (0..count).filter(|&lane| found[lane] != sink);
-            for (axis, cells) in self.spread.iter().enumerate() {
-                for lane in inside.clone() {
+            for lane in inside.clone() {
+                for (axis, cells) in self.spread.iter().enumerate() {
                     let (centre, own) = cells[positions[axis][lane]];
                     let off = seen[axis][lane] - centre;
                     spreading[axis] += off * off + own;

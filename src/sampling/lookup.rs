@@ -3,8 +3,9 @@
 //!
 //! A range is cut into bins of equal width. Rounding makes the number of a coordinate's bin uncertain by one, but it is
 //! a monotone function of the coordinate; so the cells that can meet a bin follow from the bins *computed* for the
-//! edges. A table gives the lowest of them, and a binary search over a fixed number of cells, one compare and one
-//! conditional add a round, finds the right one.
+//! edges. A table gives the lowest of them; the right one is as many cells above it as of the next edges lie below the
+//! coordinate. Where more than a few cells meet a bin a binary search over a fixed number of cells finds it, one compare
+//! and one conditional add a round.
 
 use crate::space::{Axis, CellSpace};
 use crate::system::LANES;
@@ -57,7 +58,7 @@ impl AxisLookup {
         let candidates = (0..bins).map(|bin| highest(bin) - lowest(bin) + 1).max();
         let candidates = candidates.unwrap_or(1);
         let mut edges = axis.edges()[..count].to_vec();
-        edges.extend(std::iter::repeat_n(f64::INFINITY, candidates));
+        edges.extend(std::iter::repeat_n(f64::INFINITY, candidates.max(FEW)));
         Self {
             from,
             to,
@@ -73,8 +74,14 @@ impl AxisLookup {
     fn find(&self, x: f64) -> (usize, bool) {
         let inside = x >= self.from && x <= self.to;
         // Converting saturates, and makes 0 of what is not a number.
-        let bin = (((x - self.from) * self.scale) as usize).min(self.lowest.len() - 1);
+        let bin = (((x - self.from) * self.scale) as u32 as usize).min(self.lowest.len() - 1);
         let mut cell = self.lowest[bin] as usize;
+        if self.candidates <= FEW {
+            // As many of the next edges as lie below: compares that do not wait for each other, and no branch.
+            let next = &self.edges[cell + 1..cell + FEW];
+            let below = next.iter().map(|&edge| usize::from(x >= edge));
+            return (cell + below.sum::<usize>(), inside);
+        }
         let mut candidates = self.candidates;
         while candidates > 1 {
             let half = candidates / 2;
