@@ -227,8 +227,9 @@ impl<'a> ColumnSampler<'a> {
             // Lanes past the last sample start where the first one of a group does.
             let sample = (first + lane).saturating_sub(self.group_starts[group]);
             let sample = if lane < count { sample } else { 0 };
-            for axis in 0..self.spread.len() {
-                offsets[axis][lane] = self.lattice.coordinate(&of_group, sample, axis);
+            let spread = offsets.iter_mut().take(self.spread.len());
+            for (axis, lanes) in spread.enumerate() {
+                lanes[lane] = self.lattice.coordinate(&of_group, sample, axis);
             }
         }
         for (axis, lanes) in states.iter_mut().enumerate() {
