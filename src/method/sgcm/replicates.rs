@@ -15,8 +15,8 @@ use crate::method::MethodError;
 use crate::sampling::{GROUPS_AT_ONCE, SampledTransitions};
 use crate::stationary::{Changed, Options, Outcome, SteadyState, without_groups};
 
-/// Mass that a group may move and its change still be taken to first order. What is of second order grows like its square:
-/// of changes that move 0.01 it is 3 %, cell by cell, and less of moments.
+/// Mass that a group may move and its change still be taken to first order. What is of second order grows like its
+/// square: of changes that move 0.01 it is 3 %, cell by cell, and less of moments.
 const LARGEST_CHANGE: f64 = 0.05;
 
 /// L1 error to which a cell map without a group is solved: far below any sampling error, which is all it is for.
