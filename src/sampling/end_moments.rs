@@ -26,7 +26,8 @@ pub(super) struct EndMoments {
 }
 
 impl EndMoments {
-    /// Adds samples that ended at places of an axis and started at `starts`, from -½ to ½ of their cell along each axis.
+    /// Adds samples that ended at places of an axis and started at `starts`, from -½ to ½ of their cell along each
+    /// axis.
     pub(super) fn add(&mut self, axis: &Axis, ends: &[f64], starts: &[[f32; MAX_DIMENSION]]) {
         // Along a line there are half as many functions.
         match axis.is_closed() {
@@ -64,7 +65,8 @@ impl EndMoments {
         }
     }
 
-    /// Adds to means what the cell's density, of a mass and with slopes inside the cell, makes of one of its `samples`.
+    /// Adds to means what the cell's density, of a mass and with slopes inside the cell, makes of one of its
+    /// `samples`.
     pub(super) fn add_to(&self, means: &mut Means, weight: f64, slopes: &[f64; MAX_DIMENSION]) {
         means.mass += weight * self.count;
         for (function, mean) in means.of.iter_mut().enumerate() {

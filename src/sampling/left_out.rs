@@ -1,11 +1,11 @@
-//! What a cell map without one group of its samples does otherwise, to first order: how much more mass it sends to each
-//! cell, and what the map makes of a small change of masses.
+//! What a cell map without one group of its samples does otherwise, to first order: how much more mass it sends to
+//! each cell, and what the map makes of a small change of masses.
 //!
-//! With masses p, slopes s and the sums n_ij and T_ija over the samples from cell j to cell i, one each and where they
-//! started along axis a, the map sends p_j (n_ij + Σ_a T_ija s_ja) / W_j, W_j being the sum over i. Slopes times masses,
-//! p_j s_ja, are linear in the masses but where slopes are shortened; there their ratio is taken to stay. So the change
-//! of what is sent has the coefficients that [`Sent`] holds for each cell. Groups are worked on four at a time: numbers
-//! of samples are then read once for all of them.
+//! With masses p, slopes s and the sums n_ij and T_ija over the samples from cell j to cell i, one each and where
+//! they started along axis a, the map sends p_j (n_ij + Σ_a T_ija s_ja) / W_j, W_j being the sum over i. Slopes
+//! times masses, p_j s_ja, are linear in the masses but where slopes are shortened; there their ratio is taken to
+//! stay. So the change of what is sent has the coefficients that [`Sent`] holds for each cell. Groups are worked on
+//! four at a time: numbers of samples are then read once for all of them.
 
 use multiversion::multiversion;
 
@@ -40,7 +40,8 @@ struct Weighed {
     starts: [f64; MAX_DIMENSION],
 }
 
-/// What a cell sends to each other: so much for each sample that ended there, and for where it started along each axis.
+/// What a cell sends to each other: so much for each sample that ended there, and for where it started along each
+/// axis.
 struct Sent {
     plain: OfGroups,
     tilted: [OfGroups; MAX_DIMENSION],
@@ -154,7 +155,8 @@ impl Linearised<'_> {
     pub(crate) fn without(&self, first: usize) -> Vec<OfGroups> {
         let all = &self.transitions.columns;
         let groups = first..self.transitions.groups.min(first + GROUPS_AT_ONCE);
-        // p_j (P_ij W^g - w^g_ij) / (W - W^g), with the weights w^g of a group: first for all, then for its own samples.
+        // p_j (P_ij W^g - w^g_ij) / (W - W^g), with the weights w^g of a group: first for all, then for its own
+        // samples.
         let of_group = |j: usize, number: usize| {
             let (column, group) = (&all[j], &all[j].groups[groups.start + number]);
             let (mut counts, mut tilted) = (0.0, 0.0);

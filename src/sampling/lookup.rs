@@ -1,11 +1,11 @@
 //! Finding cells without branches, for histograms of billions of states. The cells are exactly those of
 //! [`Axis::find`](crate::space::Axis::find).
 //!
-//! A range is cut into bins of equal width. Rounding makes the number of a coordinate's bin uncertain by one, but it is
-//! a monotone function of the coordinate; so the cells that can meet a bin follow from the bins *computed* for the
-//! edges. A table gives the lowest of them; the right one is as many cells above it as of the next edges lie below the
-//! coordinate. Where more than a few cells meet a bin a binary search over a fixed number of cells finds it, one compare
-//! and one conditional add a round.
+//! A range is cut into bins of equal width. Rounding makes the number of a coordinate's bin uncertain by one, but
+//! it is a monotone function of the coordinate; so the cells that can meet a bin follow from the bins *computed*
+//! for the edges. A table gives the lowest of them; the right one is as many cells above it as of the next edges
+//! lie below the coordinate. Where more than a few cells meet a bin a binary search over a fixed number of cells
+//! finds it, one compare and one conditional add a round.
 
 use crate::space::{Axis, CellSpace};
 use crate::system::LANES;

@@ -78,8 +78,8 @@ impl NormalStream {
         fill(&mut self.state.0, normals);
     }
 
-    /// Fills rows of four-point numbers, which serve for laws as normals do. A word makes twelve rows; what is left of
-    /// the last one is dropped.
+    /// Fills rows of four-point numbers, which serve for laws as normals do. A word makes twelve rows; what is left
+    /// of the last one is dropped.
     pub(crate) fn fill_for_laws(&mut self, rows: &mut [Lanes]) {
         fill_for_laws(&mut self.state.0, rows);
     }

@@ -9,10 +9,10 @@ const STEEPEST: f64 = 1.9;
 /// Relative slopes of the density in some cells: inside cell j it is p_j/V (1 + Σ_a s_a u_a), u_a from -½ to ½ across
 /// the cell.
 ///
-/// Slopes are differences over both neighbours, which errs by O(h²); at an end of the range over the one that is there;
-/// along an angle the first cell follows the last.
-/// Where the density would fall below zero in a corner the slopes are shortened together. `mass` has one value a cell
-/// of the space. An empty cell is flat, and so is every cell along the phase of a forcing.
+/// Slopes are differences over both neighbours, which errs by O(h²); at an end of the range over the one that is
+/// there; along an angle the first cell follows the last. Where the density would fall below zero in a corner the
+/// slopes are shortened together. `mass` has one value a cell of the space. An empty cell is flat, and so is every
+/// cell along the phase of a forcing.
 pub(super) fn cell_slopes(
     space: &CellSpace,
     cells: &[usize],

@@ -1,10 +1,10 @@
 //! What a point costs by SGCM: memory between two bounds, trajectories and their steps.
 //!
 //! A transition takes 8 bytes for its probability, 8 for its row, and 8 for a count of all samples and of each
-//! replicate, with slope correction 4 bytes more a count and axis. A cell takes 8 vectors of 8 bytes in the solver and,
-//! for each replicate, one more and those of the space in which its change is sought. The trajectories of a cell end in at most `samples` cells, and in at most all of them;
-//! the image of a box generally overlaps at least 2^d boxes. The solver's coarser levels at most double the
-//! transitions.
+//! replicate, with slope correction 4 bytes more a count and axis. A cell takes 8 vectors of 8 bytes in the solver
+//! and, for each replicate, one more and those of the space in which its change is sought. The trajectories of a
+//! cell end in at most `samples` cells, and in at most all of them; the image of a box generally overlaps at least
+//! 2^d boxes. The solver's coarser levels at most double the transitions.
 
 use super::{Correction, SgcmOptions};
 use crate::MAX_DIMENSION;

@@ -1,8 +1,9 @@
 //! Steady states without one group of samples each, by whose scatter the sampling error is estimated.
 //!
-//! A group less changes a steady state little: to first order its change is that of a linear equation, which is solved
-//! for several groups at once without a matrix of their own (`stationary`, `first_order.rs`). Where the change is not
-//! small, or is not found so, the cell map of the samples that are left is solved like that of all samples.
+//! A group less changes a steady state little: to first order its change is that of a linear equation, which is
+//! solved for several groups at once without a matrix of their own (`stationary`, `first_order.rs`). Where the
+//! change is not small, or is not found so, the cell map of the samples that are left is solved like that of all
+//! samples.
 
 use rayon::prelude::*;
 

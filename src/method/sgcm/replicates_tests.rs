@@ -125,8 +125,8 @@ fn changes_to_first_order_are_those_of_cell_maps_without_a_group() {
     }
 }
 
-/// Few trajectories pass from one well to the other: without some groups much of the mass is elsewhere, and their cell
-/// maps are solved. Changes that are small are right here too.
+/// Few trajectories pass from one well to the other: without some groups much of the mass is elsewhere, and their
+/// cell maps are solved. Changes that are small are right here too.
 #[test]
 fn large_changes_are_solved() {
     let never = Cancellation::new();

@@ -1,10 +1,10 @@
-//! How a steady state changes with its cell map, to first order: what an estimate of sampling errors needs of the cell
-//! map without a group of its samples, at a small part of the cost of solving that.
+//! How a steady state changes with its cell map, to first order: what an estimate of sampling errors needs of the
+//! cell map without a group of its samples, at a small part of the cost of solving that.
 //!
-//! Where the map P becomes P + R and the steady state p becomes p + δ, P δ + R p = λ δ + dλ p, Σ δ = 0 but for what is
-//! of second order. With N v = (P v - p Σ P v)/λ this is (I - N) δ = (R p - p Σ R p)/λ, which GMRES solves in the norm
-//! Σ v²/p, in which modes of a reversible chain are orthogonal: smoothing by one application of the map leaves the few
-//! slow modes, for each of which it takes a step or two.
+//! Where the map P becomes P + R and the steady state p becomes p + δ, P δ + R p = λ δ + dλ p, Σ δ = 0 but for what
+//! is of second order. With N v = (P v - p Σ P v)/λ this is (I - N) δ = (R p - p Σ R p)/λ, which GMRES solves in
+//! the norm Σ v²/p, in which modes of a reversible chain are orthogonal: smoothing by one application of the map
+//! leaves the few slow modes, for each of which it takes a step or two.
 
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::sampling::{GROUPS_AT_ONCE, Linearised, OfGroups};
