@@ -5,15 +5,16 @@
 //! **One choice of steps a sweep.** Steps left to the program are chosen once, from pilots at both ends and in the
 //! middle: a step that changed along the sweep would make the matrix jump.
 //!
-//! **Sampling errors by leaving out groups of samples.** The samples of every cell are split into groups; the steady
-//! state is solved again without each group (delete-a-group jackknife), warm-started, so that each density carries
-//! standard errors that include how sampling noise travels through the solve.
+//! **Sampling errors by leaving out groups of samples.** The samples of every cell are split into groups; how the
+//! steady state changes without each group (delete-a-group jackknife) follows to first order from one linear
+//! equation (`stationary`, `first_order.rs`), so that each density carries standard errors that include how
+//! sampling noise travels through the solve.
 //!
 //! **Slopes inside cells are a fixed point.** The slope correction of SGCM weights samples by the density at their
-//! starts, which depends on the density sought. Slopes and masses are found by turns (`method::solve_corrected`); the
-//! support of the matrix never changes, so closed classes are those of the plain cell map, and slopes are limited so
-//! that weights stay positive: it remains a Markov chain, for which all solvers hold. Replicates go through the same
-//! turns.
+//! starts, which depends on the density sought. Slopes and masses are found by turns (`method::solve_corrected`);
+//! the support of the matrix never changes, so closed classes are those of the plain cell map, and slopes are
+//! limited so that weights stay positive: it remains a Markov chain, for which all solvers hold. Replicates know of
+//! the slopes too.
 //!
 //! **`method` stands alone.** Sources of densities need sampling, solving and density together, and neither
 //! `continuation` nor `cli` is the place for that. Each method has a wing of its own: its settings with their defaults,

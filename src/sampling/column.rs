@@ -6,10 +6,10 @@ use super::integrator::Stepper;
 use super::lookup::CellLookup;
 use super::phase::PhaseStep;
 use super::random::{NormalStream, OnLines, StreamKey};
-use super::starts::StartLattice;
+use super::starts::{StartLattice, shift};
 use crate::MAX_DIMENSION;
 use crate::cancellation::{Cancellation, Cancelled};
-use crate::space::CellSpace;
+use crate::space::{Axis, CellSpace};
 use crate::system::{LANES, Lanes, System};
 
 /// Number that stands for the sink among destinations: cells are numbered below it.
@@ -74,6 +74,8 @@ pub(super) struct ColumnSampler<'a> {
     lattice: StartLattice,
     lookup: CellLookup,
     phase: Option<PhaseStep>,
+    /// Middle of each cell and a twelfth of the square of its width, along each axis on which mass is spread.
+    spread: Vec<Vec<(f64, f64)>>,
     /// First sample of each group, and the number of samples at the end.
     group_starts: Vec<usize>,
 }
@@ -102,10 +104,22 @@ impl<'a> ColumnSampler<'a> {
         let stepper = Stepper::new(system, options.integrator, time_step, cancellation);
         // Nothing is spread along the phase, which is the last axis.
         let spread = space.dimension() - usize::from(phase.is_some());
+        let spread_of = |axis: &Axis| -> Vec<(f64, f64)> {
+            let cells = 0..axis.count();
+            cells
+                .map(|cell| {
+                    (
+                        axis.centre(cell),
+                        axis.width(cell) * axis.width(cell) / 12.0,
+                    )
+                })
+                .collect()
+        };
         Self {
             space,
             options,
             steps,
+            spread: space.axes()[..spread].iter().map(spread_of).collect(),
             stepper: stepper.within_a_turn(),
             lattice: StartLattice::new(largest, spread),
             lookup: CellLookup::new(space),
@@ -117,19 +131,22 @@ impl<'a> ColumnSampler<'a> {
     /// Runs the trajectories of one cell. Depends on the cell's number and the options alone.
     pub(super) fn column(&self, cell: usize) -> Result<Column, Cancelled> {
         let dimension = self.space.dimension();
-        let mut ends: Vec<u64> = Vec::with_capacity(self.options.samples);
-        let mut found = [0; LANES];
+        let samples = self.options.samples;
+        let mut ends: Vec<u64> = Vec::with_capacity(samples);
+        let (mut found, mut positions) = ([0; LANES], [[0; LANES]; MAX_DIMENSION]);
         let keeps = self.options.keep_starts;
-        let mut starts: Vec<[f32; MAX_DIMENSION]> = Vec::new();
+        let mut starts: Vec<[f32; MAX_DIMENSION]> =
+            Vec::with_capacity(if keeps { samples } else { 0 });
         let mut moments = vec![EndMoments::default(); if keeps { dimension } else { 0 }];
         let mut offsets = [[0.0; LANES]; MAX_DIMENSION];
         let mut spreading = [0.0; MAX_DIMENSION];
         let mut states = OnLines([[0.0; LANES]; MAX_DIMENSION]);
         let states = &mut states.0[..dimension];
+        let mut stream = NormalStream::new(self.key(cell, 0));
         let mut group = 0;
-        for block in 0..self.options.samples.div_ceil(LANES) {
+        for block in 0..samples.div_ceil(LANES) {
             let first = block * LANES;
-            let count = LANES.min(self.options.samples - first);
+            let count = LANES.min(samples - first);
             let mut groups = [0; LANES];
             for (lane, of_lane) in groups.iter_mut().enumerate().take(count) {
                 while first + lane >= self.group_starts[group + 1] {
@@ -137,8 +154,8 @@ impl<'a> ColumnSampler<'a> {
                 }
                 *of_lane = group;
             }
-            self.place_starts(cell, first, &groups, states, &mut offsets);
-            let mut stream = NormalStream::new(self.key(cell, block as u64));
+            self.place_starts(cell, (first, count), &groups, states, &mut offsets);
+            stream.restart(self.key(cell, block as u64));
             self.stepper.enter(states);
             self.stepper.advance(states, 0, self.steps, &mut stream)?;
             let mut seen = self.stepper.seen(states);
@@ -146,18 +163,35 @@ impl<'a> ColumnSampler<'a> {
                 let end = phase.end(self.space.position(cell, phase.axis));
                 phase.put(seen.to_mut(), self.space, end);
             }
-            self.lookup.find(&seen, &mut found);
+            self.lookup
+                .find_positions(&seen, &mut found, &mut positions);
+            let sink = self.lookup.n_cells();
+            let inside = (0..count).filter(|&lane| found[lane] != sink);
+            for lane in inside.clone() {
+                for (axis, cells) in self.spread.iter().enumerate() {
+                    let (centre, own) = cells[positions[axis][lane]];
+                    let off = seen[axis][lane] - centre;
+                    spreading[axis] += off * off + own;
+                }
+            }
             for (lane, &cell) in found.iter().enumerate().take(count) {
-                let end = self.end(cell, lane, &seen, &mut spreading);
+                let end = if cell == sink { SINK } else { cell as u32 };
                 ends.push(u64::from(end) << 32 | (first + lane) as u64);
-                if keeps {
-                    let start = offsets.map(|axis: Lanes| axis[lane] as f32);
-                    starts.push(start);
-                    if end != SINK {
-                        let axes = self.space.axes().iter().zip(seen.iter());
-                        for (moments, (axis, lanes)) in moments.iter_mut().zip(axes) {
-                            moments.add(axis, lanes[lane], &start);
-                        }
+            }
+            if keeps {
+                let start = |lane: usize| offsets.map(|axis: Lanes| axis[lane] as f32);
+                starts.extend((0..count).map(start));
+                let of_block = &starts[first..];
+                for (moments, (axis, lanes)) in moments
+                    .iter_mut()
+                    .zip(self.space.axes().iter().zip(seen.iter()))
+                {
+                    if inside.clone().count() == count {
+                        moments.add(axis, &lanes[..count], of_block);
+                        continue;
+                    }
+                    for lane in inside.clone() {
+                        moments.add(axis, &[lanes[lane]], &of_block[lane..=lane]);
                     }
                 }
             }
@@ -179,53 +213,38 @@ impl<'a> ColumnSampler<'a> {
     fn place_starts(
         &self,
         cell: usize,
-        first: usize,
+        (first, count): (usize, usize),
         groups: &[usize],
         states: &mut [Lanes],
         offsets: &mut [Lanes; MAX_DIMENSION],
     ) {
-        let (mut group, mut key) = (usize::MAX, 0);
+        let (mut group, mut of_group) = (usize::MAX, [0.0; MAX_DIMENSION]);
         for (lane, &of_lane) in groups.iter().enumerate() {
             if of_lane != group {
                 group = of_lane;
-                key = self.key(cell, START_BLOCK + group as u64).word();
+                of_group = shift(self.key(cell, START_BLOCK + group as u64).word());
             }
-            let sample = (first + lane) - self.group_starts[group];
-            for (axis, lanes) in states.iter_mut().enumerate() {
-                let edges = &self.space.axes()[axis];
-                let position = self.space.position(cell, axis);
-                if self.phase.is_some_and(|phase| phase.axis == axis) {
-                    lanes[lane] = edges.edges()[position];
-                    continue;
-                }
-                let inside = self.lattice.coordinate(key, sample, axis);
-                lanes[lane] = edges.edges()[position] + edges.width(position) * inside;
-                offsets[axis][lane] = inside - 0.5;
+            // Lanes past the last sample start where the first one of a group does.
+            let sample = (first + lane).saturating_sub(self.group_starts[group]);
+            let sample = if lane < count { sample } else { 0 };
+            let spread = offsets.iter_mut().take(self.spread.len());
+            for (axis, lanes) in spread.enumerate() {
+                lanes[lane] = self.lattice.coordinate(&of_group, sample, axis);
             }
         }
-    }
-
-    /// Number of an end cell, or that of the sink; adds to `spreading` the mean square distance of a point spread over
-    /// the cell.
-    fn end(
-        &self,
-        cell: usize,
-        lane: usize,
-        states: &[Lanes],
-        spreading: &mut [f64; MAX_DIMENSION],
-    ) -> u32 {
-        if cell == self.lookup.n_cells() {
-            return SINK;
-        }
-        let phase = self.phase.map(|phase| phase.axis);
-        let axes = self.space.axes().iter().enumerate();
-        for (axis, edges) in axes.filter(|(axis, _)| phase != Some(*axis)) {
+        for (axis, lanes) in states.iter_mut().enumerate() {
+            let edges = &self.space.axes()[axis];
             let position = self.space.position(cell, axis);
-            let off = states[axis][lane] - edges.centre(position);
-            let width = edges.width(position);
-            spreading[axis] += off * off + width * width / 12.0;
+            let (from, width) = (edges.edges()[position], edges.width(position));
+            if axis >= self.spread.len() {
+                lanes.fill(from);
+                continue;
+            }
+            for (x, offset) in lanes.iter_mut().zip(&mut offsets[axis]) {
+                *x = from + width * *offset;
+                *offset -= 0.5;
+            }
         }
-        cell as u32
     }
 
     /// The column of samples that are numbered by end cell and sample.

@@ -26,21 +26,47 @@ pub(super) struct EndMoments {
 }
 
 impl EndMoments {
-    /// Adds a sample that ended at `x` and started at `start`, from -½ to ½ of its cell along each axis.
-    pub(super) fn add(&mut self, axis: &Axis, x: f64, start: &[f32; MAX_DIMENSION]) {
-        let values = functions(axis, x);
-        for (sum, value) in self.plain.iter_mut().zip(values) {
-            *sum += value;
+    /// Adds samples that ended at places of an axis and started at `starts`, from -½ to ½ of their cell along each
+    /// axis.
+    pub(super) fn add(&mut self, axis: &Axis, ends: &[f64], starts: &[[f32; MAX_DIMENSION]]) {
+        // Along a line there are half as many functions.
+        match axis.is_closed() {
+            true => self.add_functions::<FUNCTIONS>(axis, ends, starts),
+            false => self.add_functions::<{ FUNCTIONS / 2 }>(axis, ends, starts),
         }
-        for (sums, &start) in self.by_start.iter_mut().zip(start) {
-            for (sum, value) in sums.iter_mut().zip(values) {
-                *sum += value * f64::from(start);
-            }
-        }
-        self.count += 1.0;
+        self.count += ends.len() as f64;
     }
 
-    /// Adds to means what the cell's density, of a mass and with slopes inside the cell, makes of one of its `samples`.
+    fn add_functions<const COUNT: usize>(
+        &mut self,
+        axis: &Axis,
+        ends: &[f64],
+        starts: &[[f32; MAX_DIMENSION]],
+    ) {
+        let (mut plain, mut by_start) = ([0.0; COUNT], [[0.0; MAX_DIMENSION]; COUNT]);
+        for function in 0..COUNT {
+            plain[function] = self.plain[function];
+            by_start[function] = self.by_start.map(|sums| sums[function]);
+        }
+        for (&x, start) in ends.iter().zip(starts) {
+            let (values, start) = (functions(axis, x), start.map(f64::from));
+            for function in 0..COUNT {
+                plain[function] += values[function];
+                for (sum, start) in by_start[function].iter_mut().zip(&start) {
+                    *sum += values[function] * start;
+                }
+            }
+        }
+        for function in 0..COUNT {
+            self.plain[function] = plain[function];
+            for (sums, sum) in self.by_start.iter_mut().zip(&by_start[function]) {
+                sums[function] = *sum;
+            }
+        }
+    }
+
+    /// Adds to means what the cell's density, of a mass and with slopes inside the cell, makes of one of its
+    /// `samples`.
     pub(super) fn add_to(&self, means: &mut Means, weight: f64, slopes: &[f64; MAX_DIMENSION]) {
         means.mass += weight * self.count;
         for (function, mean) in means.of.iter_mut().enumerate() {
@@ -52,6 +78,7 @@ impl EndMoments {
 }
 
 /// The functions at a place. Along a line two of them are zero.
+#[inline(always)]
 fn functions(axis: &Axis, x: f64) -> [f64; FUNCTIONS] {
     if !axis.is_closed() {
         return [x, x * x, 0.0, 0.0];
@@ -142,9 +169,9 @@ mod tests {
                 let x = -3.0 + (f64::from(place) + 0.5) * 1e-3;
                 let weight = (-0.5 * (axis.apart(x, middle) / 0.4).powi(2)).exp();
                 let mut one = EndMoments::default();
-                one.add(&axis, x, &none);
+                one.add(&axis, &[x], &[none]);
                 one.add_to(&mut means, weight, &[0.0; MAX_DIMENSION]);
-                ends.add(&axis, x, &none);
+                ends.add(&axis, &[x], &[none]);
                 mass[axis.find(x).unwrap()] += weight;
             }
             for (cell, mass) in mass.iter().enumerate() {

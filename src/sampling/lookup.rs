@@ -1,10 +1,11 @@
 //! Finding cells without branches, for histograms of billions of states. The cells are exactly those of
 //! [`Axis::find`](crate::space::Axis::find).
 //!
-//! A range is cut into bins of equal width. Rounding makes the number of a coordinate's bin uncertain by one, but it is
-//! a monotone function of the coordinate; so the cells that can meet a bin follow from the bins *computed* for the
-//! edges. A table gives the lowest of them, and a binary search over a fixed number of cells, one compare and one
-//! conditional add a round, finds the right one.
+//! A range is cut into bins of equal width. Rounding makes the number of a coordinate's bin uncertain by one, but
+//! it is a monotone function of the coordinate; so the cells that can meet a bin follow from the bins *computed*
+//! for the edges. A table gives the lowest of them; the right one is as many cells above it as of the next edges
+//! lie below the coordinate. Where more than a few cells meet a bin a binary search over a fixed number of cells
+//! finds it, one compare and one conditional add a round.
 
 use crate::space::{Axis, CellSpace};
 use crate::system::LANES;
@@ -57,7 +58,7 @@ impl AxisLookup {
         let candidates = (0..bins).map(|bin| highest(bin) - lowest(bin) + 1).max();
         let candidates = candidates.unwrap_or(1);
         let mut edges = axis.edges()[..count].to_vec();
-        edges.extend(std::iter::repeat_n(f64::INFINITY, candidates));
+        edges.extend(std::iter::repeat_n(f64::INFINITY, candidates.max(FEW)));
         Self {
             from,
             to,
@@ -73,8 +74,14 @@ impl AxisLookup {
     fn find(&self, x: f64) -> (usize, bool) {
         let inside = x >= self.from && x <= self.to;
         // Converting saturates, and makes 0 of what is not a number.
-        let bin = (((x - self.from) * self.scale) as usize).min(self.lowest.len() - 1);
+        let bin = (((x - self.from) * self.scale) as u32 as usize).min(self.lowest.len() - 1);
         let mut cell = self.lowest[bin] as usize;
+        if self.candidates <= FEW {
+            // As many of the next edges as lie below: compares that do not wait for each other, and no branch.
+            let next = &self.edges[cell + 1..cell + FEW];
+            let below = next.iter().map(|&edge| usize::from(x >= edge));
+            return (cell + below.sum::<usize>(), inside);
+        }
         let mut candidates = self.candidates;
         while candidates > 1 {
             let half = candidates / 2;
@@ -113,11 +120,35 @@ impl CellLookup {
     /// Cells of a batch; the sink's number for states outside Ω and those that are not numbers.
     #[inline(always)]
     pub(crate) fn find(&self, states: &[[f64; LANES]], cells: &mut [usize; LANES]) {
+        self.find_along(states, cells, |_, _, _| {});
+    }
+
+    /// The same, with the position along each axis of each state, that of the nearest cell beyond Ω.
+    #[inline(always)]
+    pub(super) fn find_positions(
+        &self,
+        states: &[[f64; LANES]],
+        cells: &mut [usize; LANES],
+        positions: &mut [[usize; LANES]],
+    ) {
+        self.find_along(states, cells, |axis, lane, cell| {
+            positions[axis][lane] = cell
+        });
+    }
+
+    #[inline(always)]
+    fn find_along(
+        &self,
+        states: &[[f64; LANES]],
+        cells: &mut [usize; LANES],
+        mut tell: impl FnMut(usize, usize, usize),
+    ) {
         cells.fill(0);
         let mut outside = [false; LANES];
-        for (lanes, (axis, stride)) in states.iter().zip(&self.axes) {
+        for (number, (lanes, (axis, stride))) in states.iter().zip(&self.axes).enumerate() {
             for lane in 0..LANES {
                 let (cell, inside) = axis.find(lanes[lane]);
+                tell(number, lane, cell);
                 cells[lane] += stride * cell;
                 outside[lane] |= !inside;
             }

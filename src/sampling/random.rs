@@ -67,14 +67,19 @@ impl NormalStream {
         Self { state }
     }
 
+    /// Begins anew as the stream of a key.
+    pub(crate) fn restart(&mut self, key: StreamKey) {
+        seed_lanes(key.word(), &mut self.state.0);
+    }
+
     /// Fills rows of standard normals. Numbers come in pairs of rows: after an odd number of rows the second
     /// half of the last pair is dropped.
     pub(crate) fn fill(&mut self, normals: &mut [Lanes]) {
         fill(&mut self.state.0, normals);
     }
 
-    /// Fills rows of four-point numbers, which serve for laws as normals do. A word makes twelve rows; what is left of
-    /// the last one is dropped.
+    /// Fills rows of four-point numbers, which serve for laws as normals do. A word makes twelve rows; what is left
+    /// of the last one is dropped.
     pub(crate) fn fill_for_laws(&mut self, rows: &mut [Lanes]) {
         fill_for_laws(&mut self.state.0, rows);
     }

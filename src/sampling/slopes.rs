@@ -1,7 +1,7 @@
 //! Slopes of a density inside its cells, from the masses of neighbouring cells.
 
 use crate::MAX_DIMENSION;
-use crate::space::CellSpace;
+use crate::space::{Axis, CellSpace};
 
 /// Largest Σ |s_a|: the density at the lowest corner of a cell stays at 5 % of the mean or above.
 const STEEPEST: f64 = 1.9;
@@ -9,21 +9,17 @@ const STEEPEST: f64 = 1.9;
 /// Relative slopes of the density in some cells: inside cell j it is p_j/V (1 + Σ_a s_a u_a), u_a from -½ to ½ across
 /// the cell.
 ///
-/// Slopes are differences over both neighbours, which errs by O(h²); at an end of the range over the one that is there;
-/// along an angle the first cell follows the last.
-/// Where the density would fall below zero in a corner the slopes are shortened together. `mass` has one value a cell
-/// of the space. An empty cell is flat, and so is every cell along the phase of a forcing.
+/// Slopes are differences over both neighbours, which errs by O(h²); at an end of the range over the one that is
+/// there; along an angle the first cell follows the last. Where the density would fall below zero in a corner the
+/// slopes are shortened together. `mass` has one value a cell of the space. An empty cell is flat, and so is every
+/// cell along the phase of a forcing.
 pub(super) fn cell_slopes(
     space: &CellSpace,
     cells: &[usize],
     mass: &[f64],
     phase: Option<usize>,
 ) -> Vec<[f64; MAX_DIMENSION]> {
-    let dimension = space.dimension();
-    let mut strides = vec![1; dimension];
-    for axis in (1..dimension).rev() {
-        strides[axis - 1] = strides[axis] * space.axes()[axis].count();
-    }
+    let strides = strides(space);
     let of_cell = |&cell: &usize| {
         let mut slopes = [0.0; MAX_DIMENSION];
         if mass[cell] > 0.0 {
@@ -43,15 +39,55 @@ pub(super) fn cell_slopes(
     cells.iter().map(of_cell).collect()
 }
 
+/// Positions along an axis of the cells whose masses make the slope at a position.
+fn neighbours(edges: &Axis, position: usize) -> (usize, usize) {
+    let last = edges.count() - 1;
+    match edges.is_closed() {
+        true => ((position + last) % (last + 1), (position + 1) % (last + 1)),
+        false => (position.saturating_sub(1), (position + 1).min(last)),
+    }
+}
+
+/// The slope of a cell along an axis times its mass, which is linear in masses where slopes are not shortened: cells
+/// above and below, and by how much their masses add to it and take from it.
+pub(super) fn slope_of_masses(
+    space: &CellSpace,
+    cell: usize,
+    axis: usize,
+    stride: usize,
+) -> [(usize, f64); 2] {
+    let edges = &space.axes()[axis];
+    let position = space.position(cell, axis);
+    let (below, above) = neighbours(edges, position);
+    let distance = edges.apart(edges.centre(above), edges.centre(below));
+    let scale = edges.width(position).powi(2) / distance;
+    let cell_at = |at: usize| cell + at * stride - position * stride;
+    [
+        (cell_at(above), scale / edges.width(above)),
+        (cell_at(below), -scale / edges.width(below)),
+    ]
+}
+
+/// Whether the slopes of a cell were shortened.
+pub(super) fn are_shortened(slopes: &[f64; MAX_DIMENSION]) -> bool {
+    slopes.iter().map(|slope| slope.abs()).sum::<f64>() > STEEPEST * (1.0 - 1e-9)
+}
+
+/// The distance in cell numbers from one position to the next, an axis.
+pub(super) fn strides(space: &CellSpace) -> Vec<usize> {
+    let dimension = space.dimension();
+    let mut strides = vec![1; dimension];
+    for axis in (1..dimension).rev() {
+        strides[axis - 1] = strides[axis] * space.axes()[axis].count();
+    }
+    strides
+}
+
 /// Relative slope along one axis.
 fn slope(space: &CellSpace, cell: usize, axis: usize, stride: usize, mass: &[f64]) -> f64 {
     let edges = &space.axes()[axis];
     let position = space.position(cell, axis);
-    let last = edges.count() - 1;
-    let (below, above) = match edges.is_closed() {
-        true => ((position + last) % (last + 1), (position + 1) % (last + 1)),
-        false => (position.saturating_sub(1), (position + 1).min(last)),
-    };
+    let (below, above) = neighbours(edges, position);
     // Cells of one line share their extent along the other axes.
     let density = |at: usize| mass[cell + at * stride - position * stride] / edges.width(at);
     let difference = density(above) - density(below);
@@ -62,7 +98,7 @@ fn slope(space: &CellSpace, cell: usize, axis: usize, stride: usize, mass: &[f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::space::{Axis, Grading};
+    use crate::space::Grading;
 
     #[test]
     fn a_linear_density_has_its_slopes_on_any_cells() {

@@ -20,11 +20,20 @@ const MULTIPLIERS: [&[f64]; MAX_DIMENSION] = [
     ],
 ];
 
-/// Starts for any group size of one run: the lattice's generators, coprime to its number of points.
+/// Starts for any group size of one run: where each point of the lattice is, in parts of as many strata, before it is
+/// shifted.
 #[derive(Debug, Clone)]
 pub(super) struct StartLattice {
-    points: usize,
-    generators: [usize; MAX_DIMENSION],
+    points: f64,
+    strata: Vec<Vec<f64>>,
+}
+
+/// By how much the lattice of a group is shifted, an axis.
+pub(super) type Shift = [f64; MAX_DIMENSION];
+
+/// The shift of the lattice of a cell's group, to which `key` belongs.
+pub(super) fn shift(key: u64) -> Shift {
+    std::array::from_fn(|axis| unit(mix(key.wrapping_add(axis as u64))))
 }
 
 impl StartLattice {
@@ -36,15 +45,21 @@ impl StartLattice {
         for (generator, multiplier) in generators[1..].iter_mut().zip(multipliers) {
             *generator = coprime_near((multiplier * points as f64).round() as usize, points);
         }
-        Self { points, generators }
+        // Generators are coprime to the number of points: every stratum has one.
+        let of_axis = |generator: &usize| -> Vec<f64> {
+            let strata = (0..points).map(|point| point * generator % points);
+            strata.map(|stratum| stratum as f64).collect()
+        };
+        Self {
+            points: points as f64,
+            strata: generators.iter().map(of_axis).collect(),
+        }
     }
 
-    /// Coordinate in [0, 1) of a group's sample on one axis; `key` belongs to the cell and group. Samples 2i and
-    /// 2i + 1 are mirror images of each other.
-    pub(super) fn coordinate(&self, key: u64, sample: usize, axis: usize) -> f64 {
-        let shift = unit(mix(key.wrapping_add(axis as u64)));
-        let step = (sample / 2) * self.generators[axis] % self.points;
-        let coordinate = (step as f64 + shift) / self.points as f64;
+    /// Coordinate in [0, 1) of a group's sample on one axis. Samples 2i and 2i + 1 are mirror images of each other.
+    pub(super) fn coordinate(&self, shift: &Shift, sample: usize, axis: usize) -> f64 {
+        let stratum = self.strata[axis][sample / 2];
+        let coordinate = (stratum + shift[axis]) / self.points;
         if sample.is_multiple_of(2) {
             coordinate
         } else {
@@ -78,7 +93,7 @@ mod tests {
             let lattice = StartLattice::new(samples, dimension);
             let points = samples.div_ceil(2);
             for axis in 0..dimension {
-                let start = |sample| lattice.coordinate(99, sample, axis);
+                let start = |sample| lattice.coordinate(&shift(99), sample, axis);
                 let strata = (0..points).map(|i| (start(2 * i) * points as f64) as usize);
                 let mut strata: Vec<usize> = strata.collect();
                 strata.sort_unstable();
@@ -98,7 +113,7 @@ mod tests {
         for key in 0..20 {
             let mut counts = [0_i32; 25];
             for sample in 0..250 {
-                let at = |axis| (lattice.coordinate(mix(key), sample, axis) * 5.0) as usize;
+                let at = |axis| (lattice.coordinate(&shift(mix(key)), sample, axis) * 5.0) as usize;
                 counts[(at(0) * 5 + at(1)).min(24)] += 1;
             }
             assert!(
@@ -111,7 +126,7 @@ mod tests {
     #[test]
     fn one_start_is_uniform_over_keys() {
         let lattice = StartLattice::new(100, 2);
-        let starts = (0..4000).map(|key| lattice.coordinate(mix(key), 7, 1));
+        let starts = (0..4000).map(|key| lattice.coordinate(&shift(mix(key)), 7, 1));
         // The shift alone is random: a start is uniform in its stratum of width 1/50.
         let place: Vec<f64> = starts.map(|start| (start * 50.0).fract()).collect();
         let mean = place.iter().sum::<f64>() / 4000.0;

@@ -32,11 +32,11 @@ pub struct TransitionMatrix {
 /// delete-a-group jackknife, the sampling error of anything computed from the matrix can be estimated.
 #[derive(Debug, Clone)]
 pub struct SampledTransitions {
-    cells: Vec<usize>,
-    columns: Vec<Column>,
-    groups: usize,
-    dimension: usize,
-    phase: Option<usize>,
+    pub(super) cells: Vec<usize>,
+    pub(super) columns: Vec<Column>,
+    pub(super) groups: usize,
+    pub(super) dimension: usize,
+    pub(super) phase: Option<usize>,
     map_step: f64,
     time_step: f64,
 }

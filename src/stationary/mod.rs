@@ -37,8 +37,10 @@
 //! is not symmetric is answered on all cells.
 
 pub mod generator;
+mod hessenberg;
 mod transition_matrix;
 
+pub(crate) use transition_matrix::{Changed, MOST_APPLICATIONS, without_groups};
 pub use transition_matrix::{
     ClassShare, Info, Options, Outcome, SecondEigenvalue, Solver, StationaryError, SteadyState,
     second_eigenvalue, solve,

@@ -1,14 +1,15 @@
 //! What a point costs by SGCM: memory between two bounds, trajectories and their steps.
 //!
 //! A transition takes 8 bytes for its probability, 8 for its row, and 8 for a count of all samples and of each
-//! replicate, with slope correction 4 bytes more a count and axis. A cell takes 8 vectors of 8 bytes in the solver and
-//! one more for each replicate. The trajectories of a cell end in at most `samples` cells, and in at most all of them;
-//! the image of a box generally overlaps at least 2^d boxes. The solver's coarser levels at most double the
-//! transitions.
+//! replicate, with slope correction 4 bytes more a count and axis. A cell takes 8 vectors of 8 bytes in the solver
+//! and, for each replicate, one more and those of the space in which its change is sought. The trajectories of a
+//! cell end in at most `samples` cells, and in at most all of them; the image of a box generally overlaps at least
+//! 2^d boxes. The solver's coarser levels at most double the transitions.
 
 use super::{Correction, SgcmOptions};
 use crate::MAX_DIMENSION;
 use crate::method::StepChoice;
+use crate::stationary::MOST_APPLICATIONS;
 
 /// What a point costs by SGCM.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,7 +55,8 @@ impl SgcmOptions {
         };
         let replicates = self.replicates as f64;
         let transition = 2.0 * 16.0 + (8.0 + starts) * (replicates + 1.0);
-        let cell = 8.0 * (8.0 + replicates + moments);
+        let sought = (1 + MOST_APPLICATIONS) as f64;
+        let cell = 8.0 * (8.0 + replicates * sought + moments);
         transitions * transition + cells * cell
     }
 }
@@ -76,20 +78,20 @@ mod tests {
             assert!(options.cost(2.0 * n_cells, 2).most_bytes >= 2.0 * cost.most_bytes);
             assert!(more.cost(n_cells, 2).most_bytes >= cost.most_bytes);
         }
-        // 10 cells, 10 transitions each at most: 10·(10·104 + 128) bytes with 8 replicates.
+        // 10 cells, 10 transitions each at most: 10·(10·104 + 8·(8 + 8·41)) bytes with 8 replicates.
         let plain = SgcmOptions {
             correction: Correction::None,
             ..options.clone()
         };
-        assert_eq!(plain.cost(10.0, 2).most_bytes, 11_680.0);
+        assert_eq!(plain.cost(10.0, 2).most_bytes, 37_280.0);
         assert_eq!(
             plain.cost(10.0, 2).least_bytes,
-            10.0 * (4.0 * 104.0 + 128.0)
+            10.0 * (4.0 * 104.0 + 2688.0)
         );
         // Slopes: 2·4 bytes more a count and transition, 8·(2·21 + 8) a cell.
         assert_eq!(
             options.cost(10.0, 2).most_bytes,
-            11_680.0 + 10.0 * (10.0 * 72.0 + 400.0)
+            37_280.0 + 10.0 * (10.0 * 72.0 + 400.0)
         );
     }
 

@@ -8,6 +8,9 @@ mod options;
 mod phases;
 #[cfg(test)]
 mod phases_tests;
+mod replicates;
+#[cfg(test)]
+mod replicates_tests;
 mod session;
 mod slope_correction;
 mod solved;

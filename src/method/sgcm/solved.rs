@@ -3,16 +3,15 @@
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use super::Correction;
 use super::phases::amplitudes;
+use super::replicates::Replicates;
 use super::slope_correction::{Corrected, solve_by};
 use super::source::{METHOD, SampledPoint, SgcmSource};
 use super::velocities::velocities;
 use super::widening::all_moments;
 use crate::MAX_DIMENSION;
-use crate::cancellation::{Cancellation, Cancelled};
+use crate::cancellation::Cancellation;
 use crate::continuation::measure::{ESCAPE_RATE, MAP_STEP, TIME_STEP_BIAS};
 use crate::continuation::{Finding, Solution};
 use crate::density::{EstimatedDensity, moments};
@@ -25,12 +24,8 @@ use crate::monte_carlo::StepBias;
 use crate::sampling::{SampledTransitions, TransitionMatrix};
 use crate::stationary::{Options, Outcome, SteadyState, second_eigenvalue};
 
-/// L1 error to which replicates are solved: far below any sampling error, which is all they are for.
-const REPLICATE_TOLERANCE: f64 = 1e-7;
-
-/// L1 change by a turn of the slope correction at which it ends, and that of replicates.
+/// L1 change by a turn of the slope correction at which it ends.
 const CHANGE: f64 = 1e-6;
-const REPLICATE_CHANGE: f64 = 1e-4;
 
 /// Escape per map step below which mass is said to stay in Ω, and relaxation is not looked at.
 const NO_ESCAPE: f64 = 1e-12;
@@ -86,42 +81,6 @@ impl SgcmSource {
         }
     }
 
-    /// Steady states without one group of samples each; fewer than asked for when one of them has none.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
-    fn replicates(
-        &self,
-        correction: Correction,
-        transitions: &SampledTransitions,
-        full: &SteadyState,
-        cancellation: &Cancellation,
-    ) -> Result<Vec<Vec<f64>>, Cancelled> {
-        let options = Options::new(self.options.solver, REPLICATE_TOLERANCE);
-        let options = options.cancelled_by(cancellation);
-        let replicate = |group: usize| {
-            let start = Some(full.mass.as_slice());
-            let solved = solve_by(
-                correction,
-                transitions,
-                self.problem.space(),
-                start,
-                Some(group),
-                (&options, REPLICATE_CHANGE),
-            );
-            match solved.map(|solved| solved.outcome) {
-                Ok(Outcome::Steady(steady)) => Ok(Some(steady.mass)),
-                Err(MethodError::Cancelled(cancelled)) => Err(cancelled),
-                _ => Ok(None),
-            }
-        };
-        let replicates: Result<Vec<Option<Vec<f64>>>, Cancelled> = (0..transitions.groups())
-            .into_par_iter()
-            .map(replicate)
-            .collect();
-        Ok(replicates?.into_iter().flatten().collect())
-    }
-
     fn densities(
         &self,
         point: &SampledPoint,
@@ -174,10 +133,9 @@ impl SgcmSource {
         if !info.converged {
             reporter.not_converged(info.error_estimate);
         }
-        let mut replicates = self.replicates(correction, transitions, &steady, cancellation)?;
-        if replicates.len() < 2 {
-            replicates.clear();
-        }
+        let Replicates {
+            masses: replicates, ..
+        } = self.replicates(point, correction, slopes, &steady, cancellation)?;
         let densities = self.densities(point, &steady, &replicates)?;
         let space = self.problem.space();
         let maps = self.maps(point.value)?;

@@ -118,8 +118,8 @@ impl Stepper<'_> {
         if self.positions.is_empty() {
             return Cow::Borrowed(states);
         }
-        let mut seen = states.to_vec();
-        self.shifts(states, |axis, lane, shift| seen[axis][lane] += shift);
+        let (mut seen, mut room) = (states.to_vec(), Room::default());
+        self.shift(1.0, states, &mut seen, &mut room);
         self.reflect(&mut seen);
         self.turn_back(&mut seen);
         Cow::Owned(seen)
@@ -130,34 +130,50 @@ impl Stepper<'_> {
         if self.positions.is_empty() {
             return;
         }
-        let mut entered = rows_of(states);
+        let (mut rows, mut room) = (rows_of(states), Room::default());
+        let entered = &mut rows[..states.len()];
+        let mut next = [[0.0; LANES]; MAX_DIMENSION];
+        let next = &mut next[..states.len()];
         for _ in 0..TURNS {
-            let mut next = rows_of(states);
-            self.shifts(&entered[..states.len()], |axis, lane, shift| {
-                next[axis][lane] -= shift
-            });
-            entered = next;
+            next.copy_from_slice(states);
+            self.shift(-1.0, entered, next, &mut room);
+            entered.copy_from_slice(next);
         }
-        states.copy_from_slice(&entered[..states.len()]);
+        states.copy_from_slice(entered);
     }
 
-    /// (dt²/8) ∂F_y/∂x F_x of the rest, by a difference over a step of the positions.
-    fn shifts(&self, states: &[Lanes], mut add: impl FnMut(usize, usize, f64)) {
-        let [up, down] = [0.5, -0.5].map(|share| {
-            let mut moved = rows_of(states);
-            let moved = &mut moved[..states.len()];
+    /// Adds (dt²/8) ∂F_y/∂x F_x of the rest at states, by a difference over a step of the positions, times a sign.
+    fn shift(&self, sign: f64, states: &[Lanes], shifted: &mut [Lanes], room: &mut Room) {
+        let Room { moved, up, down } = room;
+        let moved = &mut moved[..states.len()];
+        for (share, drift) in [(0.5, &mut *up), (-0.5, &mut *down)] {
+            moved.copy_from_slice(states);
             self.move_positions(moved, share * self.time_step);
-            let mut drift = [[0.0; LANES]; MAX_DIMENSION];
             self.drift_beyond(0.0, moved, &mut drift[..states.len()]);
-            drift
-        });
+        }
         for &axis in &self.rest {
             for lane in 0..LANES {
                 let shift = 0.125 * self.time_step * (up[axis][lane] - down[axis][lane]);
-                if shift.is_finite() {
-                    add(axis, lane, shift);
-                }
+                shifted[axis][lane] += if shift.is_finite() { sign * shift } else { 0.0 };
             }
+        }
+    }
+}
+
+/// Room for the drift at two states beside one.
+struct Room {
+    moved: [Lanes; MAX_DIMENSION],
+    up: [Lanes; MAX_DIMENSION],
+    down: [Lanes; MAX_DIMENSION],
+}
+
+impl Default for Room {
+    fn default() -> Self {
+        let rows = [[0.0; LANES]; MAX_DIMENSION];
+        Self {
+            moved: rows,
+            up: rows,
+            down: rows,
         }
     }
 }

@@ -3,11 +3,10 @@
 //! The operator is M⁻¹ A, so residuals are in the units of the unknowns and, divided by the smallest singular
 //! value that the Krylov space has seen, estimate the error. All sums run in a fixed order.
 
-use nalgebra::{DMatrix, DVector};
-
 use super::passes::Seat;
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::numerics::dot;
+use crate::stationary::hessenberg::Triangle;
 
 /// What a run of GMRES gave.
 pub(super) struct Outcome {
@@ -98,60 +97,4 @@ pub(super) async fn gmres(
         add_scaled(&mut outcome.solution, *weight, vector);
     }
     Ok(outcome)
-}
-
-/// The Hessenberg matrix, made triangular by rotations as it grows.
-struct Triangle {
-    columns: Vec<Vec<f64>>,
-    rotations: Vec<(f64, f64)>,
-    right: Vec<f64>,
-}
-
-impl Triangle {
-    fn new(size: f64) -> Self {
-        Self {
-            columns: Vec::new(),
-            rotations: Vec::new(),
-            right: vec![size],
-        }
-    }
-
-    /// Takes a column with its entry below the diagonal; gives the norm of the residual.
-    fn push(&mut self, mut column: Vec<f64>, below: f64) -> f64 {
-        for (index, &(cosine, sine)) in self.rotations.iter().enumerate() {
-            let (a, b) = (column[index], column[index + 1]);
-            column[index] = cosine * a + sine * b;
-            column[index + 1] = cosine * b - sine * a;
-        }
-        let last = column.len() - 1;
-        let length = column[last].hypot(below);
-        let (cosine, sine) = if length > 0.0 {
-            (column[last] / length, below / length)
-        } else {
-            (1.0, 0.0)
-        };
-        column[last] = length;
-        let end = self.right[last];
-        self.right[last] = cosine * end;
-        self.right.push(-sine * end);
-        self.rotations.push((cosine, sine));
-        self.columns.push(column);
-        (sine * end).abs()
-    }
-
-    /// Weights of the basis vectors, and the smallest singular value.
-    fn solve(&self) -> (Vec<f64>, f64) {
-        let n = self.columns.len();
-        if n == 0 {
-            return (Vec::new(), 1.0);
-        }
-        let entry =
-            |row: usize, column: usize| self.columns[column].get(row).copied().unwrap_or(0.0);
-        let matrix = DMatrix::from_fn(n, n, entry);
-        let right = DVector::from_column_slice(&self.right[..n]);
-        let weights = matrix.solve_upper_triangular(&right);
-        let smallest = matrix.singular_values().min();
-        let weights = weights.map_or_else(|| vec![0.0; n], |weights| weights.as_slice().to_vec());
-        (weights, smallest)
-    }
 }

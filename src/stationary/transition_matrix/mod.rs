@@ -11,6 +11,7 @@ mod classes;
 mod components;
 mod convergence;
 mod elimination;
+mod first_order;
 mod hierarchy;
 mod multilevel;
 mod power;
@@ -24,6 +25,7 @@ mod tests;
 use crate::cancellation::Cancellation;
 
 pub use classes::ClassShare;
+pub(crate) use first_order::{Changed, MOST_APPLICATIONS, without_groups};
 pub use second_eigenvalue::{SecondEigenvalue, second_eigenvalue};
 pub use solve::solve;
 
