@@ -20,6 +20,9 @@ pub(super) use words::{codimension_line, level_lines, stability_lines};
 /// Sections of a run's sweep that may be set anew.
 const SECTIONS: [&str; 4] = ["detect", "locate", "figures", "curve"];
 
+/// What is said where a sweep has no row that can be followed.
+const NO_ROW: &str = "no row in the box was located by an indicator: no curve to follow\n";
+
 /// Follows curves, writes them, and prints what was found.
 ///
 /// # Errors
@@ -33,6 +36,10 @@ pub(super) fn run(arguments: &CurveArguments) -> Result<Outcome, CommandError> {
             return Ok(Outcome::Interrupted);
         };
         let rows = curve_rows(&spec, &result, only)?;
+        if rows.is_empty() {
+            super::print(NO_ROW)?;
+            return Ok(Outcome::Partial);
+        }
         let alone = rows.len() == 1;
         Following {
             spec: &spec,
@@ -73,9 +80,7 @@ pub(super) fn after_sweep(
         followed.settings.curve.clone_from(&spec.settings.curve);
         let rows = curve_rows(&followed, &result, false)?;
         if rows.is_empty() {
-            return super::print(
-                "no row in the box was located by an indicator: no curve to follow\n",
-            );
+            return super::print(NO_ROW);
         }
         Following {
             spec: &followed,

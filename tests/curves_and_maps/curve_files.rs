@@ -129,3 +129,15 @@ fn curves_of_another_section_or_run_are_kept_apart_from_the_new_ones() {
     assert!(!room.holds("run/curves"));
     assert_eq!(to("run/previous/4"), Some(1.2));
 }
+
+#[test]
+fn a_sweep_file_without_a_row_to_follow_says_so() {
+    let room = Room::new();
+    let text = "[system.equations]\nx = \"-x - a x^3\"\n[system.noise]\nx = \"sqrt(2 D)\"\n\
+                [system.parameters]\nD = 0.2\na = 1\n[sweep]\nparameter = \"D\"\nfrom = 0.2\nto = 0.3\npoints = 3\n\
+                [curve]\nparameter = \"a\"\nfrom = 0.5\nto = 1.5\n";
+    room.write("one.toml", text);
+    let printed = room.run("curve one.toml --out curve").ends(1);
+    printed.says(&["no row in the box was located"]);
+    assert!(!room.holds("curve"));
+}
