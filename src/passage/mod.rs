@@ -215,3 +215,8 @@ pub enum PassageError {
     #[error(transparent)]
     Rate(#[from] RateError),
 }
+
+/// A probability, which extrapolation may have taken beyond zero or one.
+fn probability((value, error): WithError) -> WithError {
+    (value.clamp(0.0, 1.0), error)
+}

@@ -2,7 +2,7 @@
 //! border, on which mean times are exact but for the quadrature.
 
 use super::pocket::pockets_on_line;
-use super::{Passage, PassageError, Start, Timed, WithError, near_border};
+use super::{Passage, PassageError, Start, Timed, WithError, near_border, probability};
 use crate::generator::{Chain, MESH_DEPTH, MESH_PLACES, Mesh, Reach, Reduced};
 use crate::numerics::{bisected, narrowed};
 use crate::stationary::generator::AbsorbingWork;
@@ -144,7 +144,6 @@ fn timed(bordered: &Bordered, passage: &Passage) -> Result<Timed, PassageError> 
     if !(mean.0 > mean.1 && deviation.0 > 0.0 && rate.0 > 0.0 && mean.0.is_finite()) {
         return Err(PassageError::Rounding);
     }
-    let share = |(value, error): WithError| (value.clamp(0.0, 1.0), error);
     Ok(Timed {
         mean,
         deviation,
@@ -152,12 +151,12 @@ fn timed(bordered: &Bordered, passage: &Passage) -> Result<Timed, PassageError> 
         shares: known
             .by_ref()
             .take(passage.exits.len())
-            .map(share)
+            .map(probability)
             .collect(),
         survival: known
             .by_ref()
             .take(passage.times.len())
-            .map(share)
+            .map(probability)
             .collect(),
         quantiles: known.collect(),
         work: AbsorbingWork::default(),

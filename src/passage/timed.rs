@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use super::memory::PassageMemory;
 use super::moments::Numbers;
 use super::solve::Question;
-use super::{KnownDensity, Passage, PassageError};
+use super::{KnownDensity, Passage, PassageError, probability};
 use crate::cancellation::Cancellation;
 use crate::generator::GeneratorOptions;
 use crate::space::CellSpace;
@@ -131,8 +131,10 @@ pub(crate) fn timed_from(
     if !(mean.0 > mean.1 && deviation.0 > 0.0 && rate.0 > 0.0) {
         return Err(PassageError::Rounding);
     }
-    let shares = all.by_ref().take(passage.exits.len()).collect();
-    let survival = all.by_ref().take(passage.times.len()).collect();
+    let exits = all.by_ref().take(passage.exits.len());
+    let shares = exits.map(probability).collect();
+    let times = all.by_ref().take(passage.times.len());
+    let survival = times.map(probability).collect();
     Ok(Timed {
         mean,
         deviation,
