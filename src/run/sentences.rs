@@ -334,7 +334,7 @@ fn passage_in_words(family: &Family, passage: usize, fault: PassageFault) -> Str
             "all cells are inside the region that is waited for, or inside the two of its transitions, which touch: there is nothing to wait for"
         }
         PassageFault::Start => {
-            "it starts inside the region that is waited for or, on the fewest cells that errors are worked out on, within half a cell of it; or outside of the cells, or where the steady state has no mass"
+            "it starts inside the region that is waited for or, on the fewest cells that errors are worked out on, within half a cell of it, or it starts outside of the cells, or where the steady state has no mass"
         }
         PassageFault::NoDensity => {
             "its start is spread as the steady state is, and there is none: give a state as its `start`"
