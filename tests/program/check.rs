@@ -76,8 +76,8 @@ fn the_cost_is_counted() {
         &[
             "cells: 30 x 20 = 600",
             "points: 301 (f_c = -0.02, -0.0199, -0.0198, ...)",
-            // 600 cells of 4 or 100 transitions of 32 + (8 + 2·4)·9 bytes, and 8·(8 + 8 + 2·21 + 8) bytes a cell.
-            "memory: 739.2 kB to 10.9 MB",
+            // 600 cells of 4 or 100 transitions of 32 + (8 + 2·4)·9 bytes, and 8·(8 + 8·41 + 2·21 + 8) bytes a cell.
+            "memory: 2.3 MB to 12.4 MB",
             "at most 6.000e4 a point (100 a cell)",
             "time steps: 100 a trajectory, at most 6.000e6 a point",
         ],
