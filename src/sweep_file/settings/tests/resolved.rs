@@ -83,8 +83,8 @@ fn the_resolved_file_holds_every_key() {
     let keys = keys::keys().iter();
     // Formulas of quantities and their bins are written where quantities are watched, which the tests of quantities do.
     // Sizes of print that follow from the width stay open.
-    // Derived measures, regions, passages, visits, levels, exponents, slow modes and spectra are written where they are asked
-    // for.
+    // Derived measures, regions, passages, visits, levels, exponents, slow modes and spectra are written where they are
+    // asked for.
     let open = [
         "figures.style.text",
         "figures.style.line",
