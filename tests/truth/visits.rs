@@ -99,7 +99,7 @@ fn a_pendulum_visits_ranges_of_its_angle_as_often_as_rice_says() {
         for modes in ["", "phi = { modes = 8 }\n", "phi = { modes = 15 }\n"] {
             let text = format!(
                 "[system.equations]\nphi = \"v\"\nv = \"-{g} v - {k} sin(phi)\"\n\
-                 [system.noise]\nv = \"sqrt(2 {g} T)\"\n[system.bounds]\nphi = \"periodic\"\n\
+                 [system.noise]\nv = \"sqrt(2*{g}*T)\"\n[system.bounds]\nphi = \"periodic\"\n\
                  [sweep]\nparameter = \"T\"\nfrom = 0.2\nto = {temperature}\npoints = 2\n\
                  [cells]\n{modes}v = 70\n[visits]\n{visits}\n"
             );
