@@ -59,12 +59,16 @@
 //! | their density and current on a grid | `on_way.rs`, `current.rs` |
 //! | the steady state between nodes | `steady.rs` |
 //! | how often a region is visited, and for how long | `visits.rs` |
+//! | a steady state on cells along axes of modes | `laid_out.rs` |
+//! | parts of a region that are narrower than a cell | `dips.rs` |
 
 mod cells;
 mod current;
 mod density_start;
+mod dips;
 mod exits;
 mod field;
+mod laid_out;
 mod lasting;
 mod masses;
 mod memory;

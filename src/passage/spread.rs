@@ -3,6 +3,7 @@
 //! Cells that the region's border cuts are integrated up to it: along the axis that is steepest across the border to
 //! the place where each line crosses it, over lines that lie close to each other.
 
+use super::dips::{dip, may_dip};
 use super::start::{AtCoordinate as _, add_state};
 use super::tensor::{gathered, scattered, whole};
 use crate::MAX_DIMENSION;
@@ -166,7 +167,8 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
         sum + self.add(&aside, (space, kept), weights)
     }
 
-    /// Of each cell, whether it and one of those around it, corners among them, are on both sides of the border.
+    /// Of each cell, whether it and one of those around it, corners among them, are on both sides of the border, or
+    /// may be where the region is narrower than a cell.
     pub(super) fn near_border(&self, levels: &[f64]) -> Vec<bool> {
         // What lies on either side within one cell along every axis, spread axis by axis.
         let mut sides: Vec<[bool; 2]> = levels
@@ -176,6 +178,7 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
                 [is_inside, !is_inside]
             })
             .collect();
+        self.add_dips(levels, &mut sides);
         let mut stride = levels.len();
         for &count in &self.cells.shape() {
             stride /= count;
@@ -193,6 +196,27 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
             .into_iter()
             .map(|[inside, outside]| inside && outside)
             .collect()
+    }
+
+    /// Sets both sides of cells between whose nodes the level may have the other sign than at them.
+    fn add_dips(&self, levels: &[f64], sides: &mut [[bool; 2]]) {
+        let mut stride = levels.len();
+        for (axis, count) in self.cells.axes().iter().zip(self.cells.shape()) {
+            stride /= count;
+            if axis.is_modes() {
+                continue;
+            }
+            for (cell, &level) in levels.iter().enumerate() {
+                let position = cell / stride % count;
+                let at = |steps: usize| levels[cell + steps * stride];
+                let before = (position > 0).then(|| levels[cell - stride]);
+                let after = (position + 2 < count).then(|| at(2));
+                if position + 1 < count && may_dip(before, [level, at(1)], after) {
+                    sides[cell] = [true; 2];
+                    sides[cell + stride] = [true; 2];
+                }
+            }
+        }
     }
 
     /// Points of a cell that lies in the region.
@@ -220,7 +244,8 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
                 places[axis] += share;
                 self.level(&places)
             };
-            (at(0.5) - at(-0.5)).abs()
+            let [low, middle, high] = [-0.5, 0.0, 0.5].map(at);
+            (middle - low).abs() + (high - middle).abs()
         };
         let axes = (0..corner.len()).filter(|&axis| !self.cells.axes()[axis].is_modes());
         let steepest = axes.max_by(|&one, &other| change(one).total_cmp(&change(other)));
@@ -256,8 +281,8 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
         Some(parts.into_iter().flat_map(of_line).collect())
     }
 
-    /// The part of a line through a cell that is in the region, from its start along an axis: up to one crossing in
-    /// either half.
+    /// The parts of a line through a cell that are in the region, from its start along an axis: up to one crossing in
+    /// either half, or two where the region or its gap is narrower than that.
     fn inside(&self, start: &[f64], axis: usize) -> Vec<(f64, f64)> {
         let level = |share: f64| {
             let mut places = start.to_vec();
@@ -265,17 +290,25 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
             self.level(&places)
         };
         let ends = [0.0, 0.5, 1.0].map(|at| (at, level(at)));
-        let half =
-            |[(from, at_from), (to, at_to)]: [(f64, f64); 2]| match (at_from < 0.0, at_to < 0.0) {
-                (true, true) => Some((from, to)),
-                (false, false) => None,
-                (is_first, _) => {
-                    let at = crossing(&level, [(from, at_from), (to, at_to)]);
-                    Some(if is_first { (from, at) } else { (at, to) })
+        let mut parts = Vec::new();
+        for [low, high] in [[ends[0], ends[1]], [ends[1], ends[2]]] {
+            let is_inside = low.1 < 0.0;
+            let at = |one: (f64, f64), other: (f64, f64)| crossing(&level, [one, other]);
+            if is_inside != (high.1 < 0.0) {
+                let at = at(low, high);
+                parts.push(if is_inside { (low.0, at) } else { (at, high.0) });
+            } else if let Some(place) = dip(&mut |share| level(share), [low, high]) {
+                let lowest = (place, level(place));
+                let (first, last) = (at(low, lowest), at(lowest, high));
+                match is_inside {
+                    true => parts.extend([(low.0, first), (last, high.0)]),
+                    false => parts.push((first, last)),
                 }
-            };
-        let halves = [[ends[0], ends[1]], [ends[1], ends[2]]];
-        halves.into_iter().filter_map(half).collect()
+            } else if is_inside {
+                parts.push((low.0, high.0));
+            }
+        }
+        parts
     }
 }
 

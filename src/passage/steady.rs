@@ -67,12 +67,8 @@ pub(super) fn mass_in(
     density: &KnownDensity<'_>,
     region: &BoundQuantity,
 ) -> Result<WithError, PassageError> {
-    let (levels, all) = (levels(space, region)?, vec![true; space.n_cells()]);
-    let mass = |unknowns: &[f64], nodes: usize| {
-        let level = (|state: &[f64]| region.at(state), levels.as_slice());
-        let mut spread = vec![0.0; all.len()];
-        add_density((space, &all), (space, unknowns), level, nodes, &mut spread)
-    };
+    let levels = levels(space, region)?;
+    let mass = |unknowns: &[f64], nodes: usize| mass_of(space, unknowns, (region, &levels), nodes);
     let own = mass(density.unknowns, NODES);
     let fewer = mass(density.unknowns, FEWER_NODES);
     let changed = density.changes.map_or(0.0, |changes| {
@@ -88,6 +84,19 @@ pub(super) fn mass_in(
         mass(changes, NODES).abs() + roughness.of(&values)
     });
     Ok((own, (own - fewer).abs() + changed))
+}
+
+/// The mass of unknowns in a region with levels at the nodes, by polynomials through so many nodes an axis.
+pub(super) fn mass_of(
+    space: &CellSpace,
+    unknowns: &[f64],
+    (region, levels): (&BoundQuantity, &[f64]),
+    nodes: usize,
+) -> f64 {
+    let all = vec![true; space.n_cells()];
+    let level = (|state: &[f64]| region.at(state), levels);
+    let mut spread = vec![0.0; all.len()];
+    add_density((space, &all), (space, unknowns), level, nodes, &mut spread)
 }
 
 #[cfg(test)]

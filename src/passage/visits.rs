@@ -8,12 +8,15 @@
 //! The integral is over lines along each axis that meet the border: with g_a = (∂_a L)² over the sum of such squares,
 //! a crossing counts g_a/|∂_a L|, so that lines which touch the border count nothing and all axes together count once.
 
+use super::dips::{dip, may_dip};
+use super::laid_out::{LaidOut, space_of};
 use super::start::add_state;
-use super::steady::{local_volumes, mass_in};
+use super::steady::{local_volumes, mass_in, mass_of};
 use super::timed::WithError;
 use super::{KnownDensity, PassageError, dot};
 use crate::MAX_DIMENSION;
 use crate::density::Roughness;
+use crate::generator::levels;
 use crate::numerics::bisected;
 use crate::space::nodes::{FEWER_NODES, NODES};
 use crate::space::{Axis, CellSpace};
@@ -50,21 +53,32 @@ const ROUNDING: f64 = 1e-9;
 /// Visits of the region where `region` is negative, of a system in the steady state `density` on cells.
 ///
 /// # Errors
-/// [`PassageError::Generator`] for a level that has no value at a node.
+/// [`PassageError::Generator`] for a level that has no value at a node, [`PassageError::Space`] where modes across the
+/// border take too many cells.
 pub fn visits(
     (system, space): (&dyn System, &CellSpace),
     region: &BoundQuantity,
     density: KnownDensity<'_>,
 ) -> Result<Visits, PassageError> {
-    let time_share = mass_in(space, &density, region)?;
-    let axes = space.axes().iter();
+    let angles: Vec<bool> = space.axes().iter().map(Axis::is_closed).collect();
+    let laid = LaidOut::new(space, region, density)?;
+    let (cells, density) = match &laid {
+        Some(laid) => (&laid.space, laid.density(density.planes)),
+        None => (space, density),
+    };
+    let mut time_share = mass_in(cells, &density, region)?;
+    let missing =
+        |number: &dyn Fn(&[f64]) -> f64| laid.as_ref().map_or(0.0, |it| it.missing(number));
+    let levels = levels(cells, region)?;
+    time_share.1 += missing(&|values| mass_of(cells, values, (region, &levels), NODES));
+    let axes = cells.axes().iter();
     let cut = axes.filter(|axis| !axis.is_modes()).count();
     let intervals = if cut > 2 {
         INTERVALS_OF_SEVERAL
     } else {
         INTERVALS
     };
-    let border = |intervals| Border::new((system, space), region, intervals);
+    let border = |intervals| Border::new((system, cells, &angles), region, intervals);
     let (fine, rough) = (border(intervals), border(intervals / 2));
     if fine.is_endless || fine.crossings.is_empty() {
         return Ok(Visits {
@@ -73,28 +87,8 @@ pub fn visits(
             is_endless: fine.is_endless,
         });
     }
-    // What one unit of the steady state's unknowns in each cell adds to the rate.
-    let volumes = local_volumes(space);
-    let of_cells = |border: &Border<'_>, nodes: usize| {
-        let weights = border.weights(nodes).into_iter().zip(&volumes);
-        weights.map(|(weight, volume)| weight / volume).collect()
-    };
-    let own: Vec<f64> = of_cells(&fine, NODES);
-    let rate = dot(&own, density.unknowns);
-    let others = [of_cells(&fine, FEWER_NODES), of_cells(&rough, NODES)];
-    let others = others.map(|other: Vec<f64>| (dot(&other, density.unknowns) - rate).abs());
-    let changed = density.changes.map_or(0.0, |changes| {
-        // What the changes do were those of neighbouring layers of cells independent: their sum may vanish by chance.
-        let roughness = Roughness {
-            space,
-            weights: density.unknowns,
-            differences: changes,
-            planes: density.planes,
-        };
-        let centred: Vec<f64> = own.iter().map(|value| value - rate).collect();
-        dot(&own, changes).abs() + roughness.of(&centred)
-    });
-    let error = others.iter().sum::<f64>() + changed;
+    let (own, (rate, error)) = rate([&fine, &rough], density);
+    let error = error + missing(&|values| dot(&own, values));
     let least = rate - error;
     let entries = (least > 0.0).then(|| {
         let visit = time_share.0 / rate;
@@ -108,9 +102,43 @@ pub fn visits(
     })
 }
 
+/// Entries per unit of time over a border that is met at many places and at fewer, with an error; before it, what one
+/// unit of the steady state's unknowns in each cell adds to it.
+fn rate([fine, rough]: [&Border<'_>; 2], density: KnownDensity<'_>) -> (Vec<f64>, WithError) {
+    let space = fine.space;
+    let volumes = local_volumes(space);
+    let of_cells = |border: &Border<'_>, nodes: usize| {
+        let weights = border.weights(nodes).into_iter().zip(&volumes);
+        weights.map(|(weight, volume)| weight / volume).collect()
+    };
+    let own: Vec<f64> = of_cells(fine, NODES);
+    let rate = dot(&own, density.unknowns);
+    let others = [of_cells(fine, FEWER_NODES), of_cells(rough, NODES)];
+    let others = others.map(|other: Vec<f64>| (dot(&other, density.unknowns) - rate).abs());
+    let changed = density.changes.map_or(0.0, |changes| {
+        // What the changes do were those of neighbouring layers of cells independent: their sum may vanish by chance.
+        let roughness = Roughness {
+            space,
+            weights: density.unknowns,
+            differences: changes,
+            planes: density.planes,
+        };
+        let centred: Vec<f64> = own.iter().map(|value| value - rate).collect();
+        dot(&own, changes).abs() + roughness.of(&centred)
+    });
+    let error = others.iter().sum::<f64>() + changed;
+    (own, (rate, error))
+}
+
 /// Whether noise acts across the border of a region somewhere within the cells, so that it is crossed infinitely often.
-pub(crate) fn is_endless(on: (&dyn System, &CellSpace), region: &BoundQuantity) -> bool {
-    Border::new(on, region, 1).is_endless
+pub(crate) fn is_endless(
+    (system, space): (&dyn System, &CellSpace),
+    region: &BoundQuantity,
+) -> bool {
+    let angles: Vec<bool> = space.axes().iter().map(Axis::is_closed).collect();
+    let laid = space_of(space, region).ok().flatten();
+    let cells = (system, laid.as_ref().unwrap_or(space), angles.as_slice());
+    Border::new(cells, region, 1).is_endless
 }
 
 /// A state on the border.
@@ -124,6 +152,8 @@ struct Crossing {
 struct Border<'a> {
     system: &'a dyn System,
     space: &'a CellSpace,
+    /// Of each axis, whether its ends are one place.
+    angles: &'a [bool],
     region: &'a BoundQuantity,
     crossings: Vec<Crossing>,
     is_endless: bool,
@@ -131,13 +161,14 @@ struct Border<'a> {
 
 impl<'a> Border<'a> {
     fn new(
-        (system, space): (&'a dyn System, &'a CellSpace),
+        (system, space, angles): (&'a dyn System, &'a CellSpace, &'a [bool]),
         region: &'a BoundQuantity,
         intervals: usize,
     ) -> Self {
         let mut border = Self {
             system,
             space,
+            angles,
             region,
             crossings: Vec::new(),
             is_endless: false,
@@ -194,17 +225,54 @@ impl<'a> Border<'a> {
         };
         let edges = space.axes()[axis].edges();
         let levels: Vec<f64> = edges.iter().map(|&x| level(x)).collect();
-        let mut found = Vec::new();
-        for (ends, levels) in edges.windows(2).zip(levels.windows(2)) {
-            if (levels[0] < 0.0) != (levels[1] < 0.0) {
-                let starts_inside = levels[0] < 0.0;
-                let is_first = |x: f64| (level(x) < 0.0) == starts_inside;
-                found.push(bisected((ends[0], ends[1]), HALVINGS, is_first));
+        let mut brackets = Vec::new();
+        for cell in 0..levels.len() - 1 {
+            let ends = [cell, cell + 1].map(|edge| (edges[edge], levels[edge]));
+            let before = cell.checked_sub(1).map(|edge| levels[edge]);
+            let [low, high] = ends.map(|end| end.1);
+            if (low < 0.0) != (high < 0.0) {
+                brackets.push(((ends[0].0, ends[1].0), low < 0.0));
+            } else if may_dip(before, [low, high], levels.get(cell + 2).copied())
+                && let Some(place) = dip(&mut level, ends)
+            {
+                brackets.push(((ends[0].0, place), low < 0.0));
+                brackets.push(((place, ends[1].0), low >= 0.0));
             }
         }
+        let found: Vec<f64> = brackets
+            .into_iter()
+            .map(|(bracket, starts_inside)| {
+                bisected(bracket, HALVINGS, |x| (level(x) < 0.0) == starts_inside)
+            })
+            .collect();
         for x in found {
             state[axis] = x;
             self.cross_at(axis, state, share);
+        }
+        let [first, last] = [levels[0], levels[levels.len() - 1]].map(|level| level < 0.0);
+        if self.angles[axis] && first != last {
+            state[axis] = edges[0];
+            self.cross_seam(axis, state, (share, first));
+        }
+    }
+
+    /// Adds the crossing of the place where an angle's range ends and begins anew, at a state there: the region is on
+    /// one side of it alone, at the lower end or at the upper one.
+    fn cross_seam(
+        &mut self,
+        axis: usize,
+        state: [f64; MAX_DIMENSION],
+        (share, is_lower): (f64, bool),
+    ) {
+        let place = &state[..self.space.dimension()];
+        let speed = self.system.drift_at(0.0, place)[axis];
+        self.is_endless |= self.system.intensity_at(axis, 0.0, place) > 0.0;
+        let entering = if is_lower { speed } else { -speed };
+        if entering > 0.0 {
+            self.crossings.push(Crossing {
+                state,
+                weight: share * entering,
+            });
         }
     }
 

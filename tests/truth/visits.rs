@@ -64,6 +64,82 @@ fn an_oscillator_visits_wells_and_bands_as_often_as_rice_says() {
 }
 
 #[test]
+fn a_band_thinner_than_a_cell_is_visited_as_often_as_rice_says() {
+    // Cells are 0.1 to 0.2 wide.
+    let visits = "thin = \"x > 0.3 and x < 0.31\"\ngap = \"x < 0.3 or x > 0.31\"";
+    for cells in ["x = 33\nv = 60", "x = 47\nv = 60", "x = 60\nv = 60"] {
+        let (_, solution) = solved(&text(cells, visits), "", None);
+        let [share, rate] = exact(0.3, (-1.0, 1.0), |x| 0.3 < x && x < 0.31, &[0.3, 0.31]);
+        let numbers = [("thin", share), ("gap", 1.0 - share)];
+        for (name, share) in numbers {
+            let all = [
+                ("time_share", share),
+                ("visits", rate),
+                ("sojourn", share / rate),
+            ];
+            for (word, exact) in all {
+                let (value, error) = measure(&solution, &format!("{name}_{word}"));
+                // The quadrature's points are 3e-5 apart: 0.3 % of the band.
+                let off = (value - exact).abs() - 0.003 * exact;
+                assert!(off <= error, "{name}_{word}, {cells}: {off:e} of {error:e}");
+                assert!(error <= 0.05 * exact, "{name}_{word}: {error:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_pendulum_visits_ranges_of_its_angle_as_often_as_rice_says() {
+    // p = exp(-(v²/2 - k cos φ)/T) up to a factor; the angle's range ends at ±π, inside of `last` and at its border.
+    let (k, g) = (0.8, 0.4);
+    let visits = "sine = \"sin(phi) > 0.3\"\nlast = \"phi > 1\"\nhalf = \"cos(phi) < 0\"\n\
+                  far = \"phi < -2 or phi > 1\"";
+    let pi = std::f64::consts::PI;
+    for temperature in [0.25, 0.8] {
+        for modes in ["", "phi = { modes = 8 }\n", "phi = { modes = 15 }\n"] {
+            let text = format!(
+                "[system.equations]\nphi = \"v\"\nv = \"-{g} v - {k} sin(phi)\"\n\
+                 [system.noise]\nv = \"sqrt(2*{g}*T)\"\n[system.bounds]\nphi = \"periodic\"\n\
+                 [sweep]\nparameter = \"T\"\nfrom = 0.2\nto = {temperature}\npoints = 2\n\
+                 [cells]\n{modes}v = 70\n[visits]\n{visits}\n"
+            );
+            let (_, solution) = solved(&text, "", None);
+            let weight = |phi: f64| (k * phi.cos() / temperature).exp();
+            let integral = |from: f64, to: f64| {
+                let step = (to - from) / 20_000.0;
+                let middles = (0..20_000).map(|at| from + (f64::from(at) + 0.5) * step);
+                step * middles.map(weight).sum::<f64>()
+            };
+            let low = 0.3_f64.asin();
+            let ranges = [
+                ("sine", low, pi - low),
+                ("last", 1.0, pi),
+                ("half", 0.5 * pi, 1.5 * pi),
+                ("far", 1.0, 2.0 * pi - 2.0),
+            ];
+            for (name, from, to) in ranges {
+                let whole = integral(-pi, pi);
+                let share = integral(from, to) / whole;
+                let speed = (temperature / std::f64::consts::TAU).sqrt();
+                let rate = speed * (weight(from) + weight(to)) / whole;
+                let all = [
+                    ("time_share", share),
+                    ("visits", rate),
+                    ("sojourn", share / rate),
+                ];
+                for (word, exact) in all {
+                    let (value, error) = measure(&solution, &format!("{name}_{word}"));
+                    let off = (value - exact).abs();
+                    let what = format!("{name}_{word}, T = {temperature}, {modes}");
+                    assert!(off <= error, "{what}: {off:e} of {error:e}");
+                    assert!(error <= 0.1 * exact, "{what}: {error:e}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn a_region_across_whose_border_noise_acts_is_entered_infinitely_often() {
     let visits = "fast = \"v > 0.5\"\nnowhere = \"x > 80\"";
     let (sweep, solution) = solved(&text("x = 40\nv = 40", visits), "", None);
