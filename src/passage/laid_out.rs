@@ -57,15 +57,15 @@ impl LaidOut {
         }
     }
 
-    /// What modes that are missing may change of a number that is linear in the density: the larger one of what the
-    /// last modes add, and those before them.
-    pub(super) fn missing(&self, number: impl Fn(&[f64]) -> f64) -> f64 {
+    /// What the last modes add to the unknowns, and those before them: by the larger one of what either adds to a
+    /// number, modes that are missing may change it.
+    pub(super) fn added(&self) -> Vec<Vec<f64>> {
         let [own, fewer, fewest] = [&self.unknowns, &self.fewer[0], &self.fewer[1]];
-        let added = |[more, less]: [&Vec<f64>; 2]| {
-            let difference: Vec<f64> = more.iter().zip(less).map(|(a, b)| a - b).collect();
-            number(&difference).abs()
-        };
-        added([own, fewer]).max(added([fewer, fewest]))
+        let differences = [[own, fewer], [fewer, fewest]].map(|[more, less]| {
+            let pairs = more.iter().zip(less);
+            pairs.map(|(more, less)| more - less).collect()
+        });
+        differences.into()
     }
 }
 

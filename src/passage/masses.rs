@@ -8,17 +8,48 @@ use crate::space::nodes::NODES;
 /// Most points at which a density is known at once; cells are taken one by one where there are more.
 const MOST_POINTS: usize = 1 << 22;
 
-/// Spreads a density (at the nodes of `cells`, times local volumes), as far as it lies where `region` is negative, over
-/// the kept nodes of other cells, with so many nodes an axis about each point; gives the mass that was spread. `levels`
-/// are those of the region at the nodes.
-pub(super) fn add_density(
-    target: (&CellSpace, &[bool]),
-    density: (&CellSpace, &[f64]),
-    region: (impl Fn(&[f64]) -> f64, &[f64]),
+/// Lines along another axis of a cell that a border cuts where cells have more than two axes.
+const LINES_OF_SEVERAL: usize = LINES / 2;
+
+/// The masses of several densities (at the nodes of `cells`, times local volumes) where `region` is negative, by
+/// polynomials through so many nodes an axis; `levels` are those of the region at the nodes.
+pub(super) fn masses_in(
+    cells: &CellSpace,
+    densities: &[&[f64]],
+    (region, levels): (impl Fn(&[f64]) -> f64, &[f64]),
     nodes: usize,
-    weights: &mut [f64],
-) -> f64 {
-    Masses::new(density, region, nodes).add(target, weights)
+) -> Vec<f64> {
+    let axes = cells.axes().iter().filter(|axis| !axis.is_modes());
+    let lines = match axes.count() {
+        0..=2 => LINES,
+        _ => LINES_OF_SEVERAL,
+    };
+    let of = |unknowns| Spread {
+        cells,
+        unknowns,
+        region: &region,
+        lines: if nodes == NODES { lines } else { lines / 2 },
+        nodes,
+    };
+    let (is_whole, cut) = of(&[]).parts(levels);
+    let places = of(&[]).points();
+    let is_even = places.iter().map(Vec::len).product::<usize>() <= MOST_POINTS;
+    let total = |points: Vec<Point>, spread: &Spread<'_, _>| -> f64 {
+        spread.masses(points).map(|(_, mass)| mass).sum()
+    };
+    let masses = densities.iter().map(|unknowns| {
+        let spread = of(unknowns);
+        let of_cut = total(cut.clone(), &spread);
+        let of_whole: f64 = match is_even {
+            true => spread.masses_of_whole(&places, &is_whole).iter().sum(),
+            false => (0..is_whole.len())
+                .filter(|&cell| is_whole[cell])
+                .map(|cell| total(spread.whole(cell), &spread))
+                .sum(),
+        };
+        of_cut + of_whole
+    });
+    masses.collect()
 }
 
 /// The masses of a density in a region, at points that may be spread over the nodes of several grids.
@@ -46,18 +77,8 @@ impl<'a, R: Fn(&[f64]) -> f64> Masses<'a, R> {
             lines: if nodes == NODES { LINES } else { LINES / 2 },
             nodes,
         };
-        let mut is_whole = vec![false; cells.n_cells()];
-        let mut cut = Vec::new();
-        let is_near_border = spread.near_border(levels);
-        for (cell, &level) in levels.iter().enumerate() {
-            let is_inside = level < 0.0;
-            let parts = is_near_border[cell].then(|| spread.cut(cell));
-            match parts {
-                Some(Some(points)) => cut.extend(spread.masses(points)),
-                Some(None) => is_whole[cell] = true,
-                None => is_whole[cell] = is_inside,
-            }
-        }
+        let (is_whole, cut) = spread.parts(levels);
+        let cut = spread.masses(cut).collect();
         let points = spread.points();
         let count: usize = points.iter().map(Vec::len).product();
         let even = (count <= MOST_POINTS).then(|| {

@@ -219,6 +219,23 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
         }
     }
 
+    /// Which cells lie in the region as a whole, and points of those that its border cuts; `levels` are those of the
+    /// region at the nodes.
+    pub(super) fn parts(&self, levels: &[f64]) -> (Vec<bool>, Vec<Point>) {
+        let mut is_whole = vec![false; levels.len()];
+        let mut cut = Vec::new();
+        let is_near_border = self.near_border(levels);
+        for (cell, &level) in levels.iter().enumerate() {
+            let parts = is_near_border[cell].then(|| self.cut(cell));
+            match parts {
+                Some(Some(points)) => cut.extend(points),
+                Some(None) => is_whole[cell] = true,
+                None => is_whole[cell] = level < 0.0,
+            }
+        }
+        (is_whole, cut)
+    }
+
     /// Points of a cell that lies in the region.
     pub(super) fn whole(&self, cell: usize) -> Vec<Point> {
         let corner = self.corner(cell);

@@ -1,7 +1,7 @@
 //! A steady state on the cells of a sweep, between their nodes, and its mass in a region.
 
 use super::field::greatest_beside;
-use super::masses::add_density;
+use super::masses::masses_in;
 use super::start::at_state;
 use super::timed::WithError;
 use super::{KnownDensity, PassageError};
@@ -67,10 +67,29 @@ pub(super) fn mass_in(
     density: &KnownDensity<'_>,
     region: &BoundQuantity,
 ) -> Result<WithError, PassageError> {
+    mass_beside(space, density, region, &[]).map(|(mass, _)| mass)
+}
+
+/// The same, with the masses of some other unknowns in that region.
+pub(super) fn mass_beside(
+    space: &CellSpace,
+    density: &KnownDensity<'_>,
+    region: &BoundQuantity,
+    others: &[Vec<f64>],
+) -> Result<(WithError, Vec<f64>), PassageError> {
     let levels = levels(space, region)?;
-    let mass = |unknowns: &[f64], nodes: usize| mass_of(space, unknowns, (region, &levels), nodes);
-    let own = mass(density.unknowns, NODES);
-    let fewer = mass(density.unknowns, FEWER_NODES);
+    let masses = |all: &[&[f64]], nodes: usize| {
+        let level = |state: &[f64]| region.at(state);
+        masses_in(space, all, (level, &levels), nodes)
+    };
+    let first = [Some(density.unknowns), density.changes];
+    let first: Vec<&[f64]> = first.into_iter().flatten().collect();
+    let all: Vec<&[f64]> = (first.iter().copied())
+        .chain(others.iter().map(Vec::as_slice))
+        .collect();
+    let known = masses(&all, NODES);
+    let own = known[0];
+    let fewer = masses(&all[..1], FEWER_NODES)[0];
     let changed = density.changes.map_or(0.0, |changes| {
         // What the changes do were those of neighbouring layers of cells independent: their sum may vanish by chance.
         let of_cell = |level: &f64| f64::from(u8::from(*level < 0.0)) - own;
@@ -81,22 +100,10 @@ pub(super) fn mass_in(
             planes: density.planes,
         };
         let values: Vec<f64> = levels.iter().map(of_cell).collect();
-        mass(changes, NODES).abs() + roughness.of(&values)
+        known[1].abs() + roughness.of(&values)
     });
-    Ok((own, (own - fewer).abs() + changed))
-}
-
-/// The mass of unknowns in a region with levels at the nodes, by polynomials through so many nodes an axis.
-pub(super) fn mass_of(
-    space: &CellSpace,
-    unknowns: &[f64],
-    (region, levels): (&BoundQuantity, &[f64]),
-    nodes: usize,
-) -> f64 {
-    let all = vec![true; space.n_cells()];
-    let level = (|state: &[f64]| region.at(state), levels);
-    let mut spread = vec![0.0; all.len()];
-    add_density((space, &all), (space, unknowns), level, nodes, &mut spread)
+    let mass = (own, (own - fewer).abs() + changed);
+    Ok((mass, known[first.len()..].to_vec()))
 }
 
 #[cfg(test)]

@@ -11,12 +11,11 @@
 use super::dips::{dip, may_dip};
 use super::laid_out::{LaidOut, space_of};
 use super::start::add_state;
-use super::steady::{local_volumes, mass_in, mass_of};
+use super::steady::{local_volumes, mass_beside};
 use super::timed::WithError;
 use super::{KnownDensity, PassageError, dot};
 use crate::MAX_DIMENSION;
 use crate::density::Roughness;
-use crate::generator::levels;
 use crate::numerics::bisected;
 use crate::space::nodes::{FEWER_NODES, NODES};
 use crate::space::{Axis, CellSpace};
@@ -66,11 +65,12 @@ pub fn visits(
         Some(laid) => (&laid.space, laid.density(density.planes)),
         None => (space, density),
     };
-    let mut time_share = mass_in(cells, &density, region)?;
-    let missing =
-        |number: &dyn Fn(&[f64]) -> f64| laid.as_ref().map_or(0.0, |it| it.missing(number));
-    let levels = levels(cells, region)?;
-    time_share.1 += missing(&|values| mass_of(cells, values, (region, &levels), NODES));
+    let added = laid.as_ref().map(LaidOut::added).unwrap_or_default();
+    let largest = |changes: &mut dyn Iterator<Item = f64>| {
+        changes.fold(0.0, |most: f64, change| most.max(change.abs()))
+    };
+    let (mut time_share, changes) = mass_beside(cells, &density, region, &added)?;
+    time_share.1 += largest(&mut changes.into_iter());
     let axes = cells.axes().iter();
     let cut = axes.filter(|axis| !axis.is_modes()).count();
     let intervals = if cut > 2 {
@@ -88,7 +88,7 @@ pub fn visits(
         });
     }
     let (own, (rate, error)) = rate([&fine, &rough], density);
-    let error = error + missing(&|values| dot(&own, values));
+    let error = error + largest(&mut added.iter().map(|values| dot(&own, values)));
     let least = rate - error;
     let entries = (least > 0.0).then(|| {
         let visit = time_share.0 / rate;
