@@ -60,7 +60,7 @@
 //! | the steady state between nodes | `steady.rs` |
 //! | how often a region is visited, and for how long | `visits.rs` |
 //! | a steady state on cells along axes of modes | `laid_out.rs` |
-//! | parts of a region that are narrower than a cell | `dips.rs` |
+//! | parts of a region that are narrower than a cell | `dips.rs`, `pocket.rs` |
 
 mod cells;
 mod current;
