@@ -60,9 +60,11 @@
 //! | the steady state between nodes | `steady.rs` |
 //! | how often a region is visited, and for how long | `visits.rs` |
 //! | a steady state on cells along axes of modes | `laid_out.rs` |
+//! | where the level of a region changes its sign | `crossing.rs` |
 //! | parts of a region that are narrower than a cell | `dips.rs`, `pocket.rs` |
 
 mod cells;
+mod crossing;
 mod current;
 mod density_start;
 mod dips;

@@ -3,7 +3,7 @@
 //! through what it is on the border and through cells farther inside, along the axis with noise on which the border is
 //! nearest.
 
-use super::spread::crossing;
+use super::crossing::crossing;
 use crate::generator::lagrange;
 use crate::space::CellSpace;
 use crate::system::{BoundQuantity, System};

@@ -3,6 +3,7 @@
 //! Cells that the region's border cuts are integrated up to it: along the axis that is steepest across the border to
 //! the place where each line crosses it, over lines that lie close to each other.
 
+use super::crossing::crossing;
 use super::dips::{dip, may_dip};
 use super::start::{AtCoordinate as _, add_state};
 use super::tensor::{gathered, scattered, whole};
@@ -11,14 +12,10 @@ use crate::space::CellSpace;
 use crate::space::nodes::{AxisWeights, about, along, each};
 
 /// Gauss points of an interval, as shares of its length.
-const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
+pub(super) const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
 /// Lines along another axis of a cell that a border cuts; half as many where nodes are fewer.
 pub(super) const LINES: usize = 8;
-
-/// Steps by which a crossing is narrowed within a cell, and the width at which it is known.
-const NARROWING: usize = 100;
-const NARROW: f64 = 1e-13;
 
 /// Cells with a region.
 pub(super) struct Spread<'a, R> {
@@ -332,36 +329,6 @@ impl<R: Fn(&[f64]) -> f64> Spread<'_, R> {
 /// Both halves of a line, as [`Spread::inside`] has them where all of it is.
 const WHOLE: [(f64, f64); 2] = [(0.0, 0.5), (0.5, 1.0)];
 
-/// Where a level changes its sign between two places, by secants of which an end that stays counts half (Illinois), and
-/// by halving after every step that narrows by less than that, as where the level jumps.
-pub(super) fn crossing(level: &impl Fn(f64) -> f64, [mut a, mut b]: [(f64, f64); 2]) -> f64 {
-    let (mut stayed, mut is_slow) = (0_i32, false);
-    for _ in 0..NARROWING {
-        let width = (b.0 - a.0).abs();
-        if width <= NARROW {
-            break;
-        }
-        let secant = a.1 / (a.1 - b.1);
-        let by_secant = secant.is_finite() && !is_slow;
-        let at = a.0 + if by_secant { secant } else { 0.5 } * (b.0 - a.0);
-        let value = level(at);
-        if value == 0.0 {
-            return at;
-        }
-        if (value < 0.0) == (a.1 < 0.0) {
-            stayed = stayed.max(0) + 1;
-            a = (at, value);
-            b.1 *= if stayed > 1 { 0.5 } else { 1.0 };
-        } else {
-            stayed = stayed.min(0) - 1;
-            b = (at, value);
-            a.1 *= if stayed < -1 { 0.5 } else { 1.0 };
-        }
-        is_slow = (b.0 - a.0).abs() > 0.5 * width;
-    }
-    0.5 * (a.0 + b.0)
-}
-
 /// All combinations of places in a cell, each with the same share.
 fn product(corner: &[f64], shares: impl Fn(usize) -> Vec<f64>) -> Vec<Point> {
     let mut all = vec![Vec::new()];
@@ -379,24 +346,4 @@ fn product(corner: &[f64], shares: impl Fn(usize) -> Vec<f64>) -> Vec<Point> {
     }
     let share = 1.0 / all.len() as f64;
     all.into_iter().map(|places| (places, share)).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn crossings_are_found_of_lines_curves_and_jumps() {
-        let at = 0.317_2;
-        let levels: [&dyn Fn(f64) -> f64; 4] = [
-            &|x| at - x,
-            &|x| (x - at) * (1.0 + 9.0 * x * x),
-            &|x| (40.0 * (x - at)).exp() - 1.0,
-            &|x| if x < at { -1.0 } else { 1e6 },
-        ];
-        for level in levels {
-            let found = crossing(&level, [(0.0, level(0.0)), (0.5, level(0.5))]);
-            assert!((found - at).abs() < 1e-9, "{found}");
-        }
-    }
 }

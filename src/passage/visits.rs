@@ -8,15 +8,16 @@
 //! The integral is over lines along each axis that meet the border: with g_a = (∂_a L)² over the sum of such squares,
 //! a crossing counts g_a/|∂_a L|, so that lines which touch the border count nothing and all axes together count once.
 
+use super::crossing::crossing;
 use super::dips::{dip, may_dip};
 use super::laid_out::{LaidOut, space_of};
+use super::spread::GAUSS;
 use super::start::add_state;
 use super::steady::{local_volumes, mass_beside};
 use super::timed::WithError;
 use super::{KnownDensity, PassageError, dot};
 use crate::MAX_DIMENSION;
 use crate::density::Roughness;
-use crate::numerics::bisected;
 use crate::space::nodes::{FEWER_NODES, NODES};
 use crate::space::{Axis, CellSpace};
 use crate::system::{BoundQuantity, System};
@@ -33,15 +34,9 @@ pub struct Visits {
     pub is_endless: bool,
 }
 
-/// Gauss points of an interval, as shares of its length.
-const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
-
 /// Intervals into which a cell is cut along the only axis across a line, and along one of several.
 const INTERVALS: usize = 4;
 const INTERVALS_OF_SEVERAL: usize = 2;
-
-/// Halvings by which a crossing is found within a cell.
-const HALVINGS: usize = 60;
 
 /// Steps of derivatives of the level, over the width of a cell.
 const STEP: f64 = 1e-4;
@@ -219,32 +214,35 @@ impl<'a> Border<'a> {
     fn cross_line(&mut self, axis: usize, mut state: [f64; MAX_DIMENSION], share: f64) {
         let (space, region) = (self.space, self.region);
         let dimension = space.dimension();
-        let mut level = |x: f64| {
-            state[axis] = x;
-            region.at(&state[..dimension])
+        let level = |x: f64| {
+            let mut there = state;
+            there[axis] = x;
+            region.at(&there[..dimension])
         };
         let edges = space.axes()[axis].edges();
         let levels: Vec<f64> = edges.iter().map(|&x| level(x)).collect();
-        let mut brackets = Vec::new();
+        // The line between two places, as shares of the way.
+        let between = |[low, high]: [(f64, f64); 2]| {
+            let at = |share: f64| low.0 + share * (high.0 - low.0);
+            at(crossing(
+                &|share| level(at(share)),
+                [(0.0, low.1), (1.0, high.1)],
+            ))
+        };
+        let mut found = Vec::new();
         for cell in 0..levels.len() - 1 {
             let ends = [cell, cell + 1].map(|edge| (edges[edge], levels[edge]));
             let before = cell.checked_sub(1).map(|edge| levels[edge]);
             let [low, high] = ends.map(|end| end.1);
             if (low < 0.0) != (high < 0.0) {
-                brackets.push(((ends[0].0, ends[1].0), low < 0.0));
+                found.push(between(ends));
             } else if may_dip(before, [low, high], levels.get(cell + 2).copied())
-                && let Some(place) = dip(&mut level, ends)
+                && let Some(place) = dip(&mut |x| level(x), ends)
             {
-                brackets.push(((ends[0].0, place), low < 0.0));
-                brackets.push(((place, ends[1].0), low >= 0.0));
+                let lowest = (place, level(place));
+                found.extend([between([ends[0], lowest]), between([lowest, ends[1]])]);
             }
         }
-        let found: Vec<f64> = brackets
-            .into_iter()
-            .map(|(bracket, starts_inside)| {
-                bisected(bracket, HALVINGS, |x| (level(x) < 0.0) == starts_inside)
-            })
-            .collect();
         for x in found {
             state[axis] = x;
             self.cross_at(axis, state, share);

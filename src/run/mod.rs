@@ -80,6 +80,7 @@ mod map;
 mod map_shards;
 mod names;
 mod number;
+mod passage_sentences;
 mod place;
 mod placing;
 mod plane_file;

@@ -2,6 +2,8 @@
 //! damping and noise balance: p = exp(-(U + v²/2)/T) up to a factor.
 
 use crate::common::sweeps::{measure, solved};
+use pbif::continuation::Solution;
+use statrs::function::erf::erfc;
 
 /// x'' = -g x' - U'(x) + √(2 g T) ξ with U = k x²/2 + b x⁴/4.
 fn text(cells: &str, visits: &str) -> String {
@@ -12,25 +14,44 @@ fn text(cells: &str, visits: &str) -> String {
     )
 }
 
-/// Probability of each of some intervals of x, and how often the ends of all of them are passed one way, by quadrature.
-fn exact(
-    temperature: f64,
-    (k, b): (f64, f64),
-    inside: impl Fn(f64) -> bool,
-    ends: &[f64],
-) -> [f64; 2] {
-    let weight = |x: f64| (-(0.5 * k * x * x + 0.25 * b * x.powi(4)) / temperature).exp();
-    let (count, reach) = (400_000, 6.0);
-    let step = 2.0 * reach / f64::from(count);
-    let (mut whole, mut part) = (0.0, 0.0);
-    for number in 0..count {
-        let x = -reach + (f64::from(number) + 0.5) * step;
-        whole += step * weight(x);
-        part += if inside(x) { step * weight(x) } else { 0.0 };
-    }
+/// End of what is integrated over: the density is below 1e-90 there.
+const FAR: f64 = 6.0;
+
+/// Probability of an interval of x, and how often both of its ends are passed one way, by quadrature with T = 0.3,
+/// k = -1 and b = 1.
+fn exact((from, to): (f64, f64)) -> [f64; 2] {
+    let temperature = 0.3;
+    let weight = |x: f64| (-(0.25 * x.powi(4) - 0.5 * x * x) / temperature).exp();
+    let integral = |from: f64, to: f64| {
+        let step = (to - from) / 20_000.0;
+        let middles = (0..20_000).map(|number| from + (f64::from(number) + 0.5) * step);
+        step * middles.map(weight).sum::<f64>()
+    };
+    let whole = integral(-FAR, FAR);
     let speed = (temperature / std::f64::consts::TAU).sqrt();
-    let crossings: f64 = ends.iter().map(|&end| speed * weight(end) / whole).sum();
-    [part / whole, crossings]
+    [
+        integral(from, to) / whole,
+        speed * (weight(from) + weight(to)) / whole,
+    ]
+}
+
+/// The three numbers of a region hold so many of their errors, which are at most a share of them.
+fn assert_visits(
+    solution: &Solution<'_>,
+    (name, [share, rate]): (&str, [f64; 2]),
+    (errors, largest): (f64, f64),
+) {
+    let all = [
+        ("time_share", share),
+        ("visits", rate),
+        ("sojourn", share / rate),
+    ];
+    for (word, exact) in all {
+        let (value, error) = measure(solution, &format!("{name}_{word}"));
+        let off = (value - exact).abs();
+        assert!(off <= errors * error, "{name}_{word}: {off:e} of {error:e}");
+        assert!(error <= largest * exact, "{name}_{word}: {error:e}");
+    }
 }
 
 #[test]
@@ -39,27 +60,14 @@ fn an_oscillator_visits_wells_and_bands_as_often_as_rice_says() {
                   slanted = \"2 x + 0.3 > 0.5\"";
     for (cells, largest) in [("x = 40\nv = 44", 0.02), ("x = 90\nv = 70", 0.003)] {
         let (_, solution) = solved(&text(cells, visits), "", None);
-        let of = |name: &str, exact: [f64; 2]| {
-            let all = [
-                ("time_share", exact[0]),
-                ("visits", exact[1]),
-                ("sojourn", exact[0] / exact[1]),
-            ];
-            for (word, exact) in all {
-                let (value, error) = measure(&solution, &format!("{name}_{word}"));
-                let off = (value - exact).abs();
-                assert!(off <= error, "{name}_{word}, {cells}: {off:e} of {error:e}");
-                assert!(
-                    error <= largest * exact,
-                    "{name}_{word}, {cells}: {error:e}"
-                );
-            }
-        };
-        let exact = |inside: fn(f64) -> bool, ends: &[f64]| exact(0.3, (-1.0, 1.0), inside, ends);
-        of("right", exact(|x| x > 0.0, &[0.0]));
-        of("high", exact(|x| x > 1.2, &[1.2]));
-        of("band", exact(|x| -0.4 < x && x < 0.9, &[-0.4, 0.9]));
-        of("slanted", exact(|x| x > 0.1, &[0.1]));
+        for (name, interval) in [
+            ("right", (0.0, FAR)),
+            ("high", (1.2, FAR)),
+            ("band", (-0.4, 0.9)),
+            ("slanted", (0.1, FAR)),
+        ] {
+            assert_visits(&solution, (name, exact(interval)), (1.0, largest));
+        }
     }
 }
 
@@ -67,24 +75,11 @@ fn an_oscillator_visits_wells_and_bands_as_often_as_rice_says() {
 fn a_band_thinner_than_a_cell_is_visited_as_often_as_rice_says() {
     // Cells are 0.1 to 0.2 wide.
     let visits = "thin = \"x > 0.3 and x < 0.31\"\ngap = \"x < 0.3 or x > 0.31\"";
+    let [share, rate] = exact((0.3, 0.31));
     for cells in ["x = 33\nv = 60", "x = 47\nv = 60", "x = 60\nv = 60"] {
         let (_, solution) = solved(&text(cells, visits), "", None);
-        let [share, rate] = exact(0.3, (-1.0, 1.0), |x| 0.3 < x && x < 0.31, &[0.3, 0.31]);
-        let numbers = [("thin", share), ("gap", 1.0 - share)];
-        for (name, share) in numbers {
-            let all = [
-                ("time_share", share),
-                ("visits", rate),
-                ("sojourn", share / rate),
-            ];
-            for (word, exact) in all {
-                let (value, error) = measure(&solution, &format!("{name}_{word}"));
-                // The quadrature's points are 3e-5 apart: 0.3 % of the band.
-                let off = (value - exact).abs() - 0.003 * exact;
-                assert!(off <= error, "{name}_{word}, {cells}: {off:e} of {error:e}");
-                assert!(error <= 0.05 * exact, "{name}_{word}: {error:e}");
-            }
-        }
+        assert_visits(&solution, ("thin", [share, rate]), (1.0, 0.05));
+        assert_visits(&solution, ("gap", [1.0 - share, rate]), (1.0, 0.05));
     }
 }
 
@@ -122,18 +117,7 @@ fn a_pendulum_visits_ranges_of_its_angle_as_often_as_rice_says() {
                 let share = integral(from, to) / whole;
                 let speed = (temperature / std::f64::consts::TAU).sqrt();
                 let rate = speed * (weight(from) + weight(to)) / whole;
-                let all = [
-                    ("time_share", share),
-                    ("visits", rate),
-                    ("sojourn", share / rate),
-                ];
-                for (word, exact) in all {
-                    let (value, error) = measure(&solution, &format!("{name}_{word}"));
-                    let off = (value - exact).abs();
-                    let what = format!("{name}_{word}, T = {temperature}, {modes}");
-                    assert!(off <= error, "{what}: {off:e} of {error:e}");
-                    assert!(error <= 0.1 * exact, "{what}: {error:e}");
-                }
+                assert_visits(&solution, (name, [share, rate]), (1.0, 0.1));
             }
         }
     }
@@ -144,9 +128,9 @@ fn a_region_across_whose_border_noise_acts_is_entered_infinitely_often() {
     let visits = "fast = \"v > 0.5\"\nnowhere = \"x > 80\"";
     let (sweep, solution) = solved(&text("x = 40\nv = 40", visits), "", None);
     let (share, error) = measure(&solution, "fast_time_share");
-    // P(v > 0.5) of a normal density of variance 0.3: erfc(0.5/√0.6)/2.
-    let exact = 0.180_655_2;
-    assert!((share - exact).abs() <= error + 1e-7 && error < 0.01);
+    // P(v > 0.5) of a normal density of variance 0.3.
+    let exact = 0.5 * erfc(0.5 / 0.6_f64.sqrt());
+    assert!((share - exact).abs() <= error && error < 0.01);
     let has = |name: &str| solution.report.measures.iter().any(|one| one.name == name);
     assert!(!has("fast_visits") && !has("fast_sojourn") && !has("nowhere_visits"));
     let family = sweep.problem.family();
@@ -186,21 +170,9 @@ fn trajectories_visit_a_well_as_often_as_rice_says() {
         "method.kind=\"monte-carlo\" method.passages=4000",
         None,
     );
-    let of = |name: &str, [share, rate]: [f64; 2]| {
-        let all = [
-            ("time_share", share),
-            ("visits", rate),
-            ("sojourn", share / rate),
-        ];
-        for (word, exact) in all {
-            let (value, error) = measure(&solution, &format!("{name}_{word}"));
-            let off = (value - exact).abs();
-            assert!(off <= 3.0 * error, "{name}_{word}: {off:e} of {error:e}");
-            assert!(error <= 0.1 * exact, "{name}_{word}: {error:e}");
-        }
-    };
-    of("right", exact(0.3, (-1.0, 1.0), |x| x > 0.0, &[0.0]));
-    of("high", exact(0.3, (-1.0, 1.0), |x| x > 1.2, &[1.2]));
+    for (name, from) in [("right", 0.0), ("high", 1.2)] {
+        assert_visits(&solution, (name, exact((from, FAR))), (3.0, 0.1));
+    }
     let mut all = solution.report.measures.iter();
     assert!(all.all(|one| !one.name.starts_with("fast")));
 }
