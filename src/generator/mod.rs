@@ -54,7 +54,9 @@ pub(crate) use absorbing::{
 };
 pub use assemble::assemble;
 pub(crate) use assemble::{assemble_damped, assemble_lines};
-pub(crate) use chain::{AxisEnd, Chain, MESH_DEPTH, MESH_PLACES, Mesh, Reach, Reduced};
+pub(crate) use chain::{
+    AxisEnd, Chain, Grid as ChainGrid, MESH_DEPTH, MESH_PLACES, Mesh, Reach, Reduced,
+};
 pub(crate) use columns::LineRates;
 pub use derivative::assemble_derivative;
 pub use grading::automatic_grading;

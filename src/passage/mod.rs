@@ -54,6 +54,7 @@
 //! | what is handed from value to value | `memory.rs` |
 //! | numbers as fields over the start | `field.rs` |
 //! | the same beside a border | `rim.rs` |
+//! | fields on one axis, from a chain | `line_fields.rs` |
 //! | processes on their way from one region to another | `reactive.rs` |
 //! | how they come into the cells | `source.rs` |
 //! | their density and current on a grid | `on_way.rs`, `current.rs` |
@@ -72,6 +73,7 @@ mod exits;
 mod field;
 mod laid_out;
 mod lasting;
+mod line_fields;
 mod masses;
 mod memory;
 mod moments;
@@ -96,6 +98,7 @@ mod visits;
 
 pub use density_start::KnownDensity;
 pub use field::{FieldTarget, PassageField, field};
+pub(crate) use line_fields::{field_on_line, reactive_on_line};
 pub(crate) use memory::PassageMemory;
 pub(crate) use on_line::{timed_on_line, transitions_on_line};
 pub(crate) use reactive::are_apart;

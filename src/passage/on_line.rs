@@ -18,17 +18,41 @@ const FEWER: f64 = 0.8;
 const HALVINGS: usize = 200;
 
 /// A line with a place on every border of some regions.
-pub(crate) struct Bordered {
-    line: Mesh,
+pub(super) struct Bordered {
+    pub(super) line: Mesh,
 }
 
 /// Where a region is on a line, element by element.
-struct Inside(Vec<bool>);
+pub(super) struct Inside(pub(super) Vec<bool>);
 
 impl Bordered {
-    /// The line of a system with places on the borders of regions (negative inside) and at `more` places; `None` where
-    /// it has no end.
-    fn new(reach: &Reach<'_>, regions: &[&BoundQuantity], more: &[f64]) -> Option<Self> {
+    /// The line of a system with places on the borders of regions (negative inside) and at some places where processes
+    /// start; `None` where it has no end.
+    fn new(reach: &Reach<'_>, regions: &[&BoundQuantity], starts: &[f64]) -> Option<Self> {
+        let (breaks, rough) = Self::breaks(reach, regions, starts)?;
+        let beside = |&start: &f64| near_border::places(start, &breaks, &rough.places);
+        let finer: Vec<f64> = starts.iter().flat_map(beside).collect();
+        let line = reach.finer_mesh(MESH_PLACES, MESH_DEPTH, &breaks, &finer)?;
+        Some(Self { line })
+    }
+
+    /// The same with places at which functions are wanted that no process starts at.
+    pub(super) fn with_places(
+        reach: &Reach<'_>,
+        regions: &[&BoundQuantity],
+        places: &[f64],
+    ) -> Option<Self> {
+        let (breaks, _) = Self::breaks(reach, regions, places)?;
+        let line = reach.mesh(MESH_PLACES, MESH_DEPTH, &breaks)?;
+        Some(Self { line })
+    }
+
+    /// The places that a line needs, and a line on which borders were looked for.
+    fn breaks(
+        reach: &Reach<'_>,
+        regions: &[&BoundQuantity],
+        more: &[f64],
+    ) -> Option<(Vec<f64>, Mesh)> {
         let mut rough = reach.mesh(MESH_PLACES, MESH_DEPTH, more)?;
         let all_pockets = |region: &&BoundQuantity| pockets_on_line(&rough.places, region);
         let pockets: Vec<f64> = regions.iter().flat_map(all_pockets).collect();
@@ -45,22 +69,44 @@ impl Bordered {
                 }
             }
         }
-        let beside = |&start: &f64| near_border::places(start, &breaks, &rough.places);
-        let finer: Vec<f64> = more.iter().flat_map(beside).collect();
-        let line = reach.finer_mesh(MESH_PLACES, MESH_DEPTH, &breaks, &finer)?;
-        Some(Self { line })
+        Some((breaks, rough))
     }
 
-    fn inside(&self, region: &BoundQuantity) -> Inside {
+    pub(super) fn inside(&self, region: &BoundQuantity) -> Inside {
         let pairs = self.line.places.windows(2);
         let middles: Vec<f64> = pairs.map(|pair| 0.5 * (pair[0] + pair[1])).collect();
         Inside(is_inside(region, &middles))
     }
 }
 
+impl Bordered {
+    /// The places of two regions, of which both have some, and none in common.
+    ///
+    /// # Errors
+    /// [`PassageError::Nowhere`], [`PassageError::Start`], [`PassageError::Overlap`].
+    pub(super) fn apart(
+        &self,
+        regions: [&BoundQuantity; 2],
+    ) -> Result<[Vec<bool>; 2], PassageError> {
+        let [first, second] = regions.map(|region| self.inside(region));
+        let is_empty = |region: &Inside| region.0.iter().all(|inside| !inside);
+        if is_empty(&second) {
+            return Err(PassageError::Nowhere);
+        }
+        if is_empty(&first) {
+            return Err(PassageError::Start);
+        }
+        let mut pairs = first.0.iter().zip(&second.0);
+        match pairs.any(|(one, other)| *one && *other) {
+            true => Err(PassageError::Overlap),
+            false => Ok([first.places(), second.places()]),
+        }
+    }
+}
+
 impl Inside {
     /// Places that belong to it, its borders among them.
-    fn places(&self) -> Vec<bool> {
+    pub(super) fn places(&self) -> Vec<bool> {
         let count = self.0.len();
         let beside = |place: usize| {
             let below = place > 0 && self.0[place - 1];
@@ -323,23 +369,10 @@ pub(crate) fn transitions_on_line(
     [from, to]: [&BoundQuantity; 2],
 ) -> Option<Result<[WithError; 3], PassageError>> {
     let bordered = Bordered::new(reach, &[from, to], &[])?;
-    let [first, second] = [from, to].map(|region| bordered.inside(region));
-    let is_empty = |region: &Inside| region.0.iter().all(|inside| !inside);
-    if is_empty(&second) {
-        return Some(Err(PassageError::Nowhere));
-    }
-    if is_empty(&first) {
-        return Some(Err(PassageError::Start));
-    }
-    if first
-        .0
-        .iter()
-        .zip(&second.0)
-        .any(|(one, other)| *one && *other)
-    {
-        return Some(Err(PassageError::Overlap));
-    }
-    let places = [first.places(), second.places()];
+    let places = match bordered.apart([from, to]) {
+        Ok(places) => places,
+        Err(error) => return Some(Err(error)),
+    };
     let all = bordered.line.grids().map(|grid| {
         let [from, to] = [0, 1].map(|region| grid.sampled(&places[region]));
         let ends: Vec<bool> = from

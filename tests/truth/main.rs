@@ -15,6 +15,7 @@ mod friction_laws;
 mod gallery;
 mod hard_cases;
 mod internal_states;
+mod line_fields;
 mod located;
 mod location;
 mod long_passages;

@@ -3,8 +3,8 @@
 use super::ends::Reached;
 use super::panel::{Panel, panels};
 use super::{Chain, Grid};
-use crate::generator::one_axis::{NODES, Rule};
-use crate::system::System;
+use crate::generator::one_axis::{NODES, Rule, look};
+use crate::system::{LANES, System};
 
 /// Share of the way from the middle of the mass to an infinitely far end at which a shorter line ends: where the end
 /// decides over a number that changes like one over the square of the length, the shorter line differs by what the
@@ -175,6 +175,20 @@ impl Mesh {
         let (from, to) = (self.places[above - 1], self.places[above]);
         let share = ((place - from) / (to - from)).clamp(0.0, 1.0);
         values[above - 1] * (1.0 - share) + values[above] * share
+    }
+
+    /// The density of the system at the places, but for the last one, where no element begins.
+    pub(crate) fn densities(&self, system: &dyn System) -> Vec<f64> {
+        let batches = self.elements.chunks(LANES);
+        let all = batches.flat_map(|batch| {
+            let mut places = [batch[0].ends.0; LANES];
+            let begins = places.iter_mut().zip(batch);
+            begins.for_each(|(place, element)| *place = element.ends.0);
+            let (_, intensity) = look(system, &places);
+            let terms = batch.iter().zip(intensity);
+            terms.map(|(element, intensity)| element.level.exp() / intensity)
+        });
+        all.collect()
     }
 
     /// All of the line as a chain; every other place of it; and what is left of it where its infinitely far ends are

@@ -153,6 +153,11 @@ impl Grid {
         own
     }
 
+    /// The numbers of these places among all.
+    pub(crate) fn kept(&self) -> impl Iterator<Item = usize> {
+        self.kept.iter().copied()
+    }
+
     /// Values at these places of those at all.
     pub(crate) fn sampled<T: Copy>(&self, values: &[T]) -> Vec<T> {
         self.kept.iter().map(|&place| values[place]).collect()

@@ -11,7 +11,8 @@ use crate::method::measures::{measures_of_passage, measures_of_visits, transitio
 use crate::method::{GeneratorMethodOptions, MethodError, Problem};
 use crate::passage::{
     FieldTarget, KnownDensity, Passage, PassageError, PassageField, PassageMemory, Timed, field,
-    reactive, timed_from, timed_on_line, transitions_on_line, visits,
+    field_on_line, reactive, reactive_on_line, timed_from, timed_on_line, transitions_on_line,
+    visits,
 };
 use crate::space::CellSpace;
 use crate::stationary::generator::{RateError, RateOptions};
@@ -199,37 +200,47 @@ impl Asked<'_> {
             exits: vec![bind(from)?, bind(&question.until)?],
             part: None,
         };
-        let (wants_fields, regions) = (
-            question
-                .fields
-                .iter()
-                .any(|wanted| wanted.kind.is_reactive()),
-            [&target.exits[0], &target.exits[1]],
-        );
+        let wanted = || {
+            let all = question.fields.iter();
+            all.filter(|wanted| wanted.kind.is_reactive())
+        };
+        let regions = [&target.exits[0], &target.exits[1]];
         let on_line = self
             .reach
             .and_then(|reach| transitions_on_line(reach, regions));
-        let on_line = match on_line {
-            Some(Ok(numbers)) if !wants_fields => {
-                return Ok(Ok((transition_measures(question, numbers), Vec::new())));
-            }
-            Some(Err(error)) => return or_fault(Err(error)),
-            other => other.and_then(Result::ok),
+        let numbers = match on_line.transpose() {
+            Ok(numbers) => numbers,
+            Err(error) => return or_fault(Err(error)),
         };
+        if let (Some(numbers), None) = (numbers, wanted().next()) {
+            return Ok(Ok((transition_measures(question, numbers), Vec::new())));
+        }
+        let fields = self
+            .reach
+            .and_then(|reach| reactive_on_line(reach, self.space, regions));
+        let stored = |density: &PassageField, current: &[PassageField]| {
+            let field = |wanted: &FieldQuestion| {
+                let field = match (wanted.kind, wanted.axis) {
+                    (FieldKind::ReactiveDensity, _) => Some(density),
+                    (FieldKind::ReactiveCurrent, Some(axis)) => current.get(axis),
+                    _ => None,
+                };
+                Some(self.stored(&wanted.name, field?.clone()))
+            };
+            wanted().filter_map(field).collect()
+        };
+        if let (Some(numbers), Some(fields)) = (numbers, fields) {
+            return or_fault(fields.map(|[density, current]| {
+                let fields = stored(&density, &[current]);
+                (transition_measures(question, numbers), fields)
+            }));
+        }
         let settings = (&self.generator, &self.rates);
         let cells = (self.system, self.space);
         let found = reactive(cells, &target, density, settings, self.cancellation);
         or_fault(found.map(|found| {
-            let numbers = on_line.unwrap_or([found.flux, found.rate, found.duration]);
-            let fields = question.fields.iter().filter_map(|wanted| {
-                let field = match (wanted.kind, wanted.axis) {
-                    (FieldKind::ReactiveDensity, _) => Some(&found.density),
-                    (FieldKind::ReactiveCurrent, Some(axis)) => found.current.get(axis),
-                    _ => None,
-                };
-                Some(self.stored(&wanted.name, field?.clone()))
-            });
-            let fields = fields.collect();
+            let numbers = numbers.unwrap_or([found.flux, found.rate, found.duration]);
+            let fields = stored(&found.density, &found.current);
             (transition_measures(question, numbers), fields)
         }))
     }
@@ -251,6 +262,12 @@ impl Asked<'_> {
             exits: wanted.exits.iter().map(bind).collect::<Result<_, _>>()?,
             part: wanted.part,
         };
+        let on_line = self
+            .reach
+            .and_then(|reach| field_on_line(reach, self.space, &target));
+        if let Some(found) = on_line {
+            return or_fault(found.map(|found| self.stored(&wanted.name, found)));
+        }
         let settings = (&self.generator, &self.rates);
         let found = field(
             self.system,
