@@ -1,5 +1,5 @@
 //! The cells on which a passage is solved: those of the sweep's range that are outside of the target, as many an axis
-//! as the sweep has.
+//! as the sweep has. Where fewer are asked for, axes of modes go without their last ones.
 //!
 //! Where a border stands across an axis without noise, as a barrier of an oscillator's displacement does, half of it
 //! lets out and half of it is never reached from inside. The density there goes as the cube root of the distance
@@ -38,7 +38,8 @@ pub(super) struct PassageCells {
     pub(super) borders: Vec<[bool; 2]>,
 }
 
-/// Finds the cells of a passage that ends where `level` is negative, `factor` times as many an axis as the space has.
+/// Finds the cells of a passage that ends where `level` is negative, `factor` times as many an axis as the space has; with
+/// any other factor than one, axes of modes are without their last ones.
 /// `parts` are the levels of parts of that region that are told apart, if there are any.
 ///
 /// # Errors
@@ -68,7 +69,10 @@ pub(super) fn cells(
             (low.min(at), high.max(at))
         });
         if axis.is_modes() {
-            axes.push(axis.clone());
+            axes.push(match factor {
+                1.0 => axis.clone(),
+                _ => axis.with_modes(axis.fewer_modes())?,
+            });
             borders.push([false; 2]);
             continue;
         }

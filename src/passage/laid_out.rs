@@ -2,14 +2,22 @@
 //!
 //! The masses at the nodes of a series say what its moments are, not how much lies on one side of a place. So the
 //! series itself is taken at the nodes of cells of equal width. What its last modes do is a part of its error.
+//!
+//! Cells serve as well where a process ends on its way along an axis that noise does not act on, and a state on an axis
+//! of modes says whether it goes out there or in, as coloured noise does. Its mean time then rises from zero, on one
+//! side of a value of that state, as a root of the distance from it, which a series of some twenty modes hardly tells.
+//! Of an angle some more harmonics do.
 
-use super::KnownDensity;
+use super::{KnownDensity, Passage, Start};
 use crate::space::{Axis, CellSpace, SpaceError};
-use crate::system::BoundQuantity;
+use crate::system::{BoundQuantity, System};
 
 /// Cells along an axis at least, and for each mode.
 const CELLS: usize = 60;
 const CELLS_OF_A_MODE: usize = 4;
+
+/// Harmonics of an angle that says whether a process goes out or in, at least.
+const HARMONICS: usize = 32;
 
 /// Modes that coarser series leave out: one of each parity, and as many again, because what the last ones add to a
 /// region may vanish, as cos 8φ adds nothing to half a turn.
@@ -28,25 +36,39 @@ pub(super) struct LaidOut {
 }
 
 impl LaidOut {
-    /// `None` where the region depends on no axis of modes.
+    /// `None` where neither the region nor how its border is crossed depends on an axis of modes.
     ///
     /// # Errors
     /// [`SpaceError`] for more cells than there may be.
     pub(super) fn new(
-        space: &CellSpace,
+        (system, space): (&dyn System, &CellSpace),
         region: &BoundQuantity,
         density: KnownDensity<'_>,
     ) -> Result<Option<Self>, SpaceError> {
-        let Some(cells) = space_of(space, region)? else {
-            return Ok(None);
-        };
+        let cells = space_of((system, space), region)?;
+        Ok(cells.map(|cells| Self::on(cells, space, density)))
+    }
+
+    fn on(cells: CellSpace, space: &CellSpace, density: KnownDensity<'_>) -> Self {
         let laid = |values: &[f64], left_out: usize| values_on(&cells, (space, values), left_out);
-        Ok(Some(Self {
+        Self {
             unknowns: laid(density.unknowns, 0),
             fewer: LEFT_OUT.map(|left_out| laid(density.unknowns, left_out)),
             changes: density.changes.map(|changes| laid(changes, 0)),
             space: cells,
-        }))
+        }
+    }
+
+    /// With what the last modes add as a part of what a second discretisation changes.
+    fn with_modes_in_changes(mut self) -> Self {
+        let added = self.added();
+        let changes = self
+            .changes
+            .get_or_insert_with(|| vec![0.0; self.unknowns.len()]);
+        for (change, added) in changes.iter_mut().zip(&added[0]) {
+            *change += added;
+        }
+        self
     }
 
     pub(super) fn density<'a>(&'a self, planes: &'a [(usize, f64)]) -> KnownDensity<'a> {
@@ -69,26 +91,92 @@ impl LaidOut {
     }
 }
 
-/// The space with cells along axes of modes that a region depends on; `None` where there are none.
+/// The space with cells along axes of modes that a region depends on, or the direction in which its border is crossed;
+/// `None` where there are none.
 ///
 /// # Errors
 /// [`SpaceError`] for more cells than there may be.
 pub(super) fn space_of(
-    space: &CellSpace,
+    (system, space): (&dyn System, &CellSpace),
     region: &BoundQuantity,
 ) -> Result<Option<CellSpace>, SpaceError> {
-    let axes = || space.axes().iter().zip(region.states());
-    if !axes().any(|(axis, &depends)| depends && axis.is_modes()) {
+    let steering = steering((system, space), region);
+    let wanted = region.states().iter().zip(&steering);
+    let wanted: Vec<bool> = wanted
+        .map(|(depends, steers)| *depends || *steers)
+        .collect();
+    laid_along(space, &wanted, |axis| {
+        laid_axis(axis, (CELLS_OF_A_MODE * axis.count()).max(CELLS))
+    })
+}
+
+/// The space with other axes in place of those axes of modes that are wanted; `None` where there are none.
+fn laid_along(
+    space: &CellSpace,
+    wanted: &[bool],
+    other: impl Fn(&Axis) -> Result<Axis, SpaceError>,
+) -> Result<Option<CellSpace>, SpaceError> {
+    let axes = || space.axes().iter().zip(wanted);
+    if !axes().any(|(axis, &wanted)| wanted && axis.is_modes()) {
         return Ok(None);
     }
-    let laid = axes().map(|(axis, &depends)| match depends && axis.is_modes() {
-        true => {
-            let (from, to) = axis.series_range();
-            Axis::uniform(from, to, (CELLS_OF_A_MODE * axis.count()).max(CELLS))
-        }
+    let laid = axes().map(|(axis, &wanted)| match wanted && axis.is_modes() {
+        true => other(axis),
         false => Ok(axis.clone()),
     });
     CellSpace::new(laid.collect::<Result<_, _>>()?).map(Some)
+}
+
+fn laid_axis(axis: &Axis, cells: usize) -> Result<Axis, SpaceError> {
+    let (from, to) = axis.series_range();
+    Axis::uniform(from, to, cells)
+}
+
+/// What a passage is solved on in place of a space with axes of modes of which one says whether the process goes out
+/// over the border of the target or in: the space, and the steady state there if the start is of it. `None` where there
+/// are no such axes.
+///
+/// # Errors
+/// [`SpaceError`] for more cells than there may be.
+pub(super) fn on_cells(
+    (system, space): (&dyn System, &CellSpace),
+    passage: &Passage,
+    density: Option<KnownDensity<'_>>,
+) -> Result<Option<(CellSpace, Option<LaidOut>)>, SpaceError> {
+    let steering = steering((system, space), &passage.until);
+    let other = |axis: &Axis| match axis.is_closed() {
+        true => axis.with_modes(axis.mode_number().max(HARMONICS)),
+        false => laid_axis(axis, CELLS),
+    };
+    let Some(cells) = laid_along(space, &steering, other)? else {
+        return Ok(None);
+    };
+    let of_density = density.filter(|_| matches!(passage.start, Start::Density(_)));
+    let laid = of_density
+        .map(|density| LaidOut::on(cells.clone(), space, density).with_modes_in_changes());
+    Ok(Some((cells, laid)))
+}
+
+/// The axes of modes on which the drift across the border of a region depends, along axes on which noise does not act.
+fn steering((system, space): (&dyn System, &CellSpace), region: &BoundQuantity) -> Vec<bool> {
+    let pairs = region.states().iter().enumerate();
+    let across = pairs.filter(|&(axis, &depends)| depends && !system.is_noisy(axis));
+    let across: Vec<usize> = across.map(|(axis, _)| axis).collect();
+    let middle: Vec<f64> = (space.axes().iter())
+        .map(|axis| axis.nodes()[axis.count() / 2])
+        .collect();
+    let drift = |axis: usize, x: f64| {
+        let mut state = middle.clone();
+        state[axis] = x;
+        system.drift_at(0.0, &state)
+    };
+    let steers = |(axis, along): (usize, &Axis)| {
+        let own = drift(axis, middle[axis]);
+        let nodes = along.nodes().iter().filter(|_| along.is_modes());
+        let mut others = nodes.map(|&x| drift(axis, x));
+        others.any(|other| across.iter().any(|&one| other[one] != own[one]))
+    };
+    space.axes().iter().enumerate().map(steers).collect()
 }
 
 /// Values at the nodes of a space, times local volumes, as those at the nodes of the cells.
@@ -100,7 +188,7 @@ fn values_on(
     let mut values = values.to_vec();
     let pairs = space.axes().iter().zip(cells.axes()).enumerate();
     for (index, (axis, laid)) in pairs {
-        if !axis.is_modes() || laid.is_modes() {
+        if axis.count() == laid.count() {
             continue;
         }
         let stride: usize = space.axes()[index + 1..].iter().map(Axis::count).product();

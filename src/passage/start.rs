@@ -5,7 +5,7 @@
 
 use super::tensor::{gathered, whole};
 use crate::MAX_DIMENSION;
-use crate::space::nodes::{AxisWeights, NODES, about, along, each, place_of};
+use crate::space::nodes::{AxisWeights, NODES, about, about_shifted, each};
 use crate::space::{Axis, CellSpace};
 
 /// Shifts of the nodes that are tried, nearest first, where some of them are inside the target.
@@ -22,21 +22,17 @@ fn around(
     mut visit: impl FnMut(usize, f64),
 ) -> bool {
     let dimension = space.dimension();
-    let mut places = [0.0; MAX_DIMENSION];
-    for ((place, axis), &x) in places.iter_mut().zip(space.axes()).zip(state) {
-        *place = place_of(axis, x);
-    }
     let mut chosen: Option<(isize, Vec<AxisWeights>)> = None;
     let shifts = SHIFTS.len().pow(dimension as u32);
     for number in 0..shifts {
         let mut rest = number;
         let mut cost = 0;
         let mut product = Vec::with_capacity(dimension);
-        for (axis, &place) in space.axes().iter().zip(&places) {
+        for (axis, &x) in space.axes().iter().zip(state) {
             let shift = SHIFTS[rest % SHIFTS.len()];
             rest /= SHIFTS.len();
             cost += shift * shift;
-            product.push(along(axis.count(), place, shift, nodes));
+            product.push(about_shifted(axis, x, shift, nodes));
         }
         if chosen.as_ref().is_some_and(|(least, _)| *least <= cost) {
             continue;

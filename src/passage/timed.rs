@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
+use super::laid_out::on_cells;
 use super::memory::PassageMemory;
 use super::moments::Numbers;
 use super::solve::Question;
@@ -82,6 +83,15 @@ pub(crate) fn timed_from(
     memory: &PassageMemory,
     cancellation: &Cancellation,
 ) -> Result<Timed, PassageError> {
+    let laid = on_cells((system.as_ref(), space), passage, density)?;
+    let planes = density.map_or(&[][..], |density| density.planes);
+    let (space, density) = match &laid {
+        Some((cells, of_density)) => {
+            let density = of_density.as_ref().map(|laid| laid.density(planes));
+            (cells, density)
+        }
+        None => (space, density),
+    };
     let question = Question {
         system,
         space,

@@ -55,7 +55,7 @@ pub fn visits(
     density: KnownDensity<'_>,
 ) -> Result<Visits, PassageError> {
     let angles: Vec<bool> = space.axes().iter().map(Axis::is_closed).collect();
-    let laid = LaidOut::new(space, region, density)?;
+    let laid = LaidOut::new((system, space), region, density)?;
     let (cells, density) = match &laid {
         Some(laid) => (&laid.space, laid.density(density.planes)),
         None => (space, density),
@@ -131,7 +131,7 @@ pub(crate) fn is_endless(
     region: &BoundQuantity,
 ) -> bool {
     let angles: Vec<bool> = space.axes().iter().map(Axis::is_closed).collect();
-    let laid = space_of(space, region).ok().flatten();
+    let laid = space_of((system, space), region).ok().flatten();
     let cells = (system, laid.as_ref().unwrap_or(space), angles.as_slice());
     Border::new(cells, region, 1).is_endless
 }

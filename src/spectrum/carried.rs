@@ -212,11 +212,11 @@ fn interpolated(
     weights: &[Vec<AxisWeights>],
     values: &[Complex<f64>],
 ) -> Vec<Complex<f64>> {
-    let mut along: Vec<AxisWeights> = weights.iter().map(|axis| axis[0]).collect();
+    let mut along: Vec<&AxisWeights> = weights.iter().map(|axis| &axis[0]).collect();
     let cells = 0..to.n_cells();
     let value = cells.map(|cell| {
         for (axis, one) in along.iter_mut().enumerate() {
-            *one = weights[axis][to.position(cell, axis)];
+            *one = &weights[axis][to.position(cell, axis)];
         }
         let mut sum = Complex::default();
         nodes::each(from, &along, |node, weight| sum += values[node] * weight);

@@ -89,9 +89,10 @@ impl GeneratorSession {
             reporter.resolution(&judged);
         }
         let (mut densities, second) = self.densities(solved, &masses)?;
+        let mut without_last_modes = None;
         if solved.second.is_some() {
             self.truncate(solved, &masses, reporter.missing(), &mut densities)?;
-            self.add_last_modes(solved, &masses, &mut densities)?;
+            without_last_modes = self.add_last_modes(solved, &masses, &mut densities)?;
         }
         // What is negative along a series is told of its modes.
         let carried = |axis: &usize| space.axes().get(*axis).is_some_and(|axis| axis.is_modes());
@@ -136,14 +137,13 @@ impl GeneratorSession {
                 closed: &self.source.closed_ends,
             },
         )?;
-        let of_states = self.with_last_harmonics(solved, [of_axes, of_quantities].concat())?;
+        let of_states = [of_axes, of_quantities].concat();
+        let of_states = self.with_last_modes(solved, of_states, without_last_modes)?;
         let moments = [of_states, at_phases].concat();
         reporter.moments(&moments);
-        reporter
-            .report
-            .measures
-            .extend(self.rotations(solved, &second.change)?);
         let shifts = reporter.shifts(&moments);
+        let rotations = self.rotations(solved, (&second.change, &shifts))?;
+        reporter.report.measures.extend(rotations);
         let answers = self.answers_to_forcing(solved, (&second.change, &shifts));
         reporter.report.measures.extend(answers);
         let cells = Cells {
@@ -164,11 +164,12 @@ impl GeneratorSession {
         ))
     }
 
-    /// How fast angles turn, and how they spread; nothing in a check.
+    /// How fast angles turn, and how they spread, from what the second scheme changes, and by how much the ends of the
+    /// ranges shift the mean of each axis; nothing in a check.
     fn rotations(
         &mut self,
         solved: &PointSolve,
-        change: &[f64],
+        (change, shifts): (&[f64], &[f64]),
     ) -> Result<Vec<Measure>, MethodError> {
         let problem = &self.source.problem;
         let Some(second) = &solved.second else {
@@ -193,6 +194,7 @@ impl GeneratorSession {
                 first: &first.matrix,
                 second,
                 change,
+                shifts,
             };
             found.extend(rotation(&steady, angle, &mut self.solver)?);
         }

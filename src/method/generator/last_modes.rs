@@ -5,8 +5,8 @@
 //! is v + δ, where δ answers to what w no longer feeds into the modes before it: Q δ = P Q w, P the projection on
 //! these. The factors of the steady state that is there serve for it.
 //!
-//! Axes of Hermite modes, of coloured noise, are asked for what is watched, and harmonics of angles for means and
-//! deviations. Along friction states and phases the answer takes a fifth of a sweep's time, and the modes of friction
+//! Axes of Hermite modes, of coloured noise, are asked for what is watched, and these and harmonics of angles for means
+//! and deviations. Along friction states and phases the answer takes a fifth of a sweep's time, and the modes of friction
 //! states are judged by what the last of them carry.
 
 use super::session::{GeneratorSession, PointSolve};
@@ -18,40 +18,40 @@ use crate::method::MethodError;
 use crate::method::watched::differences;
 use crate::space::{Axis, CellSpace, Series};
 
-/// One mode of so many is left out, and at least one of each parity. What a last one alone carries passes through zero.
-const MODES_A_MODE_LEFT_OUT: usize = 5;
-
-/// Times what the last harmonics change of a mean: those that are not there may do as much.
+/// Times what the last modes change of a mean: those that are not there may do as much.
 const SAFETY: f64 = 2.0;
 
 impl GeneratorSession {
-    /// Adds to densities of solved masses what the last modes of all axes of coloured noise change in them.
+    /// Adds to densities of solved masses what the last modes of all axes of coloured noise change in them. The unknowns
+    /// without these modes, where there are any.
     pub(super) fn add_last_modes(
         &mut self,
         solved: &PointSolve,
         masses: &[f64],
         densities: &mut [EstimatedDensity],
-    ) -> Result<(), MethodError> {
+    ) -> Result<Option<Vec<f64>>, MethodError> {
         let space = self.source.problem.space().clone();
         let asked: Vec<bool> = space.axes().iter().map(is_coloured_noise).collect();
-        let Some(there) = self.by_fewer_modes(solved, &asked)? else {
-            return Ok(());
+        let Some(fewer) = self.by_fewer_modes(solved, &asked)? else {
+            return Ok(None);
         };
-        let there = cell_masses(solved.system.as_ref(), &space, &there);
+        let there = cell_masses(solved.system.as_ref(), &space, &fewer);
         let maps = self.source.maps(solved.value)?;
         let changes = maps.changes(&self.source.problem, &differences(masses, &there))?;
         for (one, change) in densities.iter_mut().zip(changes) {
             one.truncation.add(&change);
         }
-        Ok(())
+        Ok(Some(fewer))
     }
 
-    /// Adds to moments of axes and, behind them, of the quantities that are averaged what the last harmonics of angles
-    /// change in them; in a check nothing.
-    pub(super) fn with_last_harmonics(
+    /// Adds to moments of axes and, behind them, of the quantities that are averaged what the last modes of coloured
+    /// noise change in them (`without` are the unknowns without these), and the last harmonics of angles; in a check
+    /// nothing.
+    pub(super) fn with_last_modes(
         &mut self,
         solved: &PointSolve,
         moments: Vec<EstimatedMoments>,
+        without: Option<Vec<f64>>,
     ) -> Result<Vec<EstimatedMoments>, MethodError> {
         let problem = self.source.problem.clone();
         let space = problem.space();
@@ -59,26 +59,19 @@ impl GeneratorSession {
         for (axis, _) in problem.family().angles() {
             asked[axis] = true;
         }
-        let Some(there) = self.by_fewer_modes(solved, &asked)? else {
-            return Ok(moments);
-        };
+        let harmonics = self.by_fewer_modes(solved, &asked)?;
         let system = solved.system.as_ref();
-        let masses = cell_masses(system, space, &there);
-        let of_quantities = self.source.maps(solved.value)?.plain_moments(&masses)?;
-        let of_axes = moments_of(space, &summed_to_walls(system, space, &there));
-        let others = of_axes.into_iter().chain(of_quantities);
-        let pairs = moments.into_iter().zip(others);
-        let with = |(own, other): (EstimatedMoments, Moments)| {
-            let change = |other: f64, own: f64| SAFETY * (other - own).abs();
-            own.with(Moments {
-                mean: change(other.mean, own.moments.mean),
-                standard_deviation: change(
-                    other.standard_deviation,
-                    own.moments.standard_deviation,
-                ),
-            })
-        };
-        Ok(pairs.map(with).collect())
+        let mut moments = moments;
+        for there in without.into_iter().chain(harmonics) {
+            let masses = cell_masses(system, space, &there);
+            let of_quantities = self.source.maps(solved.value)?.plain_moments(&masses)?;
+            let of_axes = moments_of(space, &summed_to_walls(system, space, &there));
+            let others = of_axes.into_iter().chain(of_quantities);
+            for (own, other) in moments.iter_mut().zip(others) {
+                *own = with_change(*own, other);
+            }
+        }
+        Ok(moments)
     }
 
     /// The unknowns as they would be without the last modes of the axes that are asked, by a flag an axis; `None` where
@@ -106,6 +99,16 @@ impl GeneratorSession {
     }
 }
 
+/// Moments with errors that hold what others differ by.
+fn with_change(own: EstimatedMoments, other: Moments) -> EstimatedMoments {
+    let change = |other: f64, own: f64| SAFETY * (other - own).abs();
+    let (mean, deviation) = (own.moments.mean, own.moments.standard_deviation);
+    own.with(Moments {
+        mean: change(other.mean, mean),
+        standard_deviation: change(other.standard_deviation, deviation),
+    })
+}
+
 /// What all modes but the last ones of each of these axes carry of masses at the nodes.
 fn of_first_modes(space: &CellSpace, asked: &[bool], masses: &[f64]) -> Vec<f64> {
     let mut first = masses.to_vec();
@@ -113,7 +116,7 @@ fn of_first_modes(space: &CellSpace, asked: &[bool], masses: &[f64]) -> Vec<f64>
     for (axis, asked) in space.axes().iter().zip(asked).rev() {
         let count = axis.count();
         if *asked {
-            let owed = axis.beyond_modes(kept(axis));
+            let owed = axis.beyond_modes(axis.fewer_modes());
             for block in first.chunks_exact_mut(stride * count) {
                 for inner in 0..stride {
                     let line: Vec<f64> =
@@ -132,15 +135,4 @@ fn of_first_modes(space: &CellSpace, asked: &[bool], masses: &[f64]) -> Vec<f64>
 
 fn is_coloured_noise(axis: &Axis) -> bool {
     matches!(axis.series(), Some(Series::Hermite { .. }))
-}
-
-/// Modes that are kept of an axis of modes, or harmonics.
-fn kept(axis: &Axis) -> usize {
-    let number = axis.mode_number();
-    let all = match axis.is_closed() {
-        true => number,
-        false => axis.count(),
-    };
-    all.saturating_sub((number / MODES_A_MODE_LEFT_OUT).max(2))
-        .max(1)
 }

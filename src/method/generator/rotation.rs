@@ -7,7 +7,8 @@
 //! harmonics of the angle all integrals are sums over nodes.
 //!
 //! The error of both is what the second scheme changes (to first order, with the factors at hand), the last two
-//! harmonics where they were left out, and what the solver leaves.
+//! harmonics where they were left out, what the solver leaves, and what the ends of other ranges do: as much as the mean
+//! along such an axis is shifted, times what the velocity at the end, and for the diffusion r/p there, is more by.
 
 use sprs::CsMat;
 
@@ -39,6 +40,8 @@ pub(super) struct Steady<'a> {
     pub(super) first: &'a CsMat<f64>,
     pub(super) second: &'a Generator,
     pub(super) change: &'a [f64],
+    /// By how much the ends of the ranges shift the mean of each axis.
+    pub(super) shifts: &'a [f64],
 }
 
 /// Velocity and effective diffusion of the angle along an axis of harmonics, named `name`.
@@ -74,11 +77,13 @@ pub(super) fn rotation(
     let spread = sum(&along.noise, change) + sum(&along.drift, &moved);
     let fastest = along.fastest(velocity);
     let left = steady.error + f64::EPSILON * (u.len() as f64).sqrt();
+    let beyond = along.beyond((u, &first), velocity, steady.shifts);
     let errors = [
-        SAFETY * turned.abs() + along.tail(u, velocity) + fastest * left,
+        SAFETY * turned.abs() + along.tail(u, velocity) + fastest * left + beyond[0],
         SAFETY * spread.abs()
             + along.tail(&first, velocity)
-            + fastest * size(&first) * (ACCURACY + left),
+            + fastest * size(&first) * (ACCURACY + left)
+            + beyond[1],
     ];
     let measure = |value: f64, error: f64, kind: crate::continuation::MeasureKind| Measure {
         error: Some(error),
@@ -165,6 +170,39 @@ impl<'a> Coefficients<'a> {
     fn fastest(&self, velocity: f64) -> f64 {
         let speeds = self.drift.iter().map(|a| (a - velocity).abs());
         speeds.fold(0.0, f64::max)
+    }
+
+    /// What may lie beyond the ends of other axes adds to the velocity and to the diffusion, from the density and the
+    /// first moment in the last cells, and by how much it shifts the mean of each axis.
+    fn beyond(&self, (u, first): (&[f64], &[f64]), velocity: f64, shifts: &[f64]) -> [f64; 2] {
+        let mut added = [0.0; 2];
+        let axes = self.space.axes().iter().zip(shifts).enumerate();
+        for (index, (axis, &shift)) in axes.filter(|(_, (axis, _))| !axis.is_modes()) {
+            let position = |cell: usize| self.space.position(cell, index);
+            let places = u.iter().enumerate();
+            let mean: f64 = places
+                .map(|(cell, mass)| mass * axis.nodes()[position(cell)])
+                .sum();
+            let last = axis.count() - 1;
+            let at_ends = [(0, axis.from()), (last, axis.to())].map(|(layer, end)| {
+                let cells = (0..u.len()).filter(|&cell| position(cell) == layer);
+                let [mass, speed, moment] = cells.fold([0.0; 3], |sums, cell| {
+                    let speed = (self.drift[cell] - velocity) * u[cell];
+                    [sums[0] + u[cell], sums[1] + speed, sums[2] + first[cell]]
+                });
+                let faster = (speed / mass / (end - mean)).abs();
+                [faster, faster * (moment / mass).abs()]
+            });
+            for (slot, added) in added.iter_mut().enumerate() {
+                let most = at_ends[0][slot].max(at_ends[1][slot]);
+                *added += if most.is_finite() {
+                    shift.abs() * most
+                } else {
+                    0.0
+                };
+            }
+        }
+        added
     }
 
     /// What the last two harmonics add to an average of the drift, at most; those that are left out add less.

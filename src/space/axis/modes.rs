@@ -14,6 +14,12 @@ use crate::space::series::{
 /// that are found hold 6.5 of the state's own, so that the normal density is a third wider than the state's.
 const DEVIATIONS_OF_A_RANGE: f64 = 5.0;
 
+/// One mode of so many is left out, and at least one of each parity. What a last one alone carries passes through zero.
+const MODES_A_MODE_LEFT_OUT: usize = 5;
+
+/// Fewest modes of a series.
+const LEAST_MODES: usize = 2;
+
 impl Axis {
     /// An axis of `count` modes: the density along it is a polynomial of degree `count` - 1, given by its values at the
     /// nodes of Gauss's rule for Legendre polynomials. For internal states that stay in the range and have no noise.
@@ -119,6 +125,18 @@ impl Axis {
             Some(Series::Fourier) => self.count() / 2,
             _ => self.count(),
         }
+    }
+
+    /// Modes, or harmonics, without the last ones, which tell what those that are not there may do.
+    pub(crate) fn fewer_modes(&self) -> usize {
+        let number = self.mode_number();
+        let least = if self.is_closed() {
+            1
+        } else {
+            LEAST_MODES.min(number)
+        };
+        let kept = number.saturating_sub((number / MODES_A_MODE_LEFT_OUT).max(2));
+        kept.max(least)
     }
 
     /// The largest number of modes it may have.
@@ -241,6 +259,25 @@ impl Axis {
         let nodes = self.nodes.iter();
         let weights = nodes.map(|&node| cardinal(turn(x) - turn(node), harmonics));
         weights.collect()
+    }
+
+    /// Of an axis of modes, what the value of a function at each node adds to that at a place, where the function is a
+    /// polynomial, or trigonometric, of the degree that the nodes tell. Beyond the outermost nodes it is what it is there.
+    pub(crate) fn interpolation(&self, x: f64) -> Vec<f64> {
+        let count = self.count();
+        if self.is_closed() {
+            let weights = self.weights_at(x, self.mode_number());
+            return weights.into_iter().map(|one| one / count as f64).collect();
+        }
+        let nodes = &self.nodes;
+        let x = x.clamp(nodes[0], nodes[count - 1]);
+        let weight = |node: usize| -> f64 {
+            let others = (0..count).filter(|&other| other != node);
+            others
+                .map(|other| (x - nodes[other]) / (nodes[node] - nodes[other]))
+                .product()
+        };
+        (0..count).map(weight).collect()
     }
 
     /// So many bins, times what finer axes have more of them: those over which its series is laid out.
