@@ -1,17 +1,19 @@
 //! Trajectory steps a second: `sample_transitions` on the Coulomb oscillator, and the ladder of kernels that leads
 //! there from a scalar loop.
 //!
-//! Read `thrpt`: an element is one integrator step of one trajectory. Build with `cargo bench --bench sampling`.
+//! Read `thrpt`: an element is one integrator step of one trajectory. Build with `cargo bench --bench sampling`. The
+//! last group has compiled steps without random numbers and cells: what arithmetic allows. Figures are in docs/sgcm.md.
 #![allow(missing_docs)] // criterion's macros make undocumented items
 
 use std::hint::black_box;
+use std::sync::Arc;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use multiversion::multiversion;
 use pbif::cancellation::Cancellation;
 use pbif::sampling::{Integrator, SamplingOptions, sample_transitions};
 use pbif::space::{Axis, CellSpace};
-use pbif::system::{LANES, Lanes, registry};
+use pbif::system::{LANES, Lanes, StepScheme, System, SystemError, registry};
 use rand::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -28,14 +30,18 @@ const MU: f64 = 0.01;
 const FRICTION: f64 = 0.02;
 const SIGMA: f64 = 0.1;
 
-fn sampling(criterion: &mut Criterion) {
+fn coulomb() -> Result<Arc<dyn System>, SystemError> {
     let values = [
         ("kappa", KAPPA),
         ("mu", MU),
         ("f_c", FRICTION),
         ("sigma2", SIGMA * SIGMA),
     ];
-    let Ok(system) = registry::find("coulomb").and_then(|model| model.system_with(&values)) else {
+    registry::find("coulomb").and_then(|model| model.system_with(&values))
+}
+
+fn sampling(criterion: &mut Criterion) {
+    let Ok(system) = coulomb() else {
         return;
     };
     let axes = Axis::uniform(-3.0, 3.0, 50).map(|axis| vec![axis.clone(), axis]);
@@ -161,5 +167,28 @@ fn ladder(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, sampling, ladder);
+/// Steps in one loop with the drift, with increments that are given.
+fn compiled(criterion: &mut Criterion) {
+    let Ok(system) = coulomb() else {
+        return;
+    };
+    let Some(steps) = system.compiled_steps() else {
+        return;
+    };
+    let mut group = criterion.benchmark_group("compiled steps with given increments, 1 thread");
+    let normals = [[0.7; LANES], [-0.7; LANES]].repeat(8);
+    group.throughput(Throughput::Elements((normals.len() * LANES) as u64));
+    let mut states = [[0.5; LANES], [0.0; LANES]];
+    for scheme in [StepScheme::Heun, StepScheme::Splitting] {
+        group.bench_function(format!("{scheme:?}"), |bencher| {
+            bencher.iter(|| {
+                let increment = SIGMA * STEP.sqrt();
+                steps.advance(scheme, STEP, increment, &mut states, black_box(&normals));
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, sampling, ladder, compiled);
 criterion_main!(benches);

@@ -6,8 +6,6 @@
 
 #![allow(clippy::print_stdout)] // An example talks to its reader.
 
-use std::time::Instant;
-
 use pbif::cancellation::Cancellation;
 use pbif::density::{Observable, estimate, total_variation_of_masses};
 use pbif::method::{Corrected, solve_corrected};
@@ -52,11 +50,9 @@ impl<'a> Trial<'a> {
 
     /// Samples and solves; `None` where mass does not stay in Ω.
     fn run(&self, options: &SamplingOptions) -> Result<Run, AnyError> {
-        let start = Instant::now();
         let (system, seeds) = (self.system, &self.pilot.cells);
         let transitions =
             sample_transitions(system, &self.space, seeds, options, &Cancellation::new())?;
-        let sampled = start.elapsed().as_secs_f64();
         let matrix = transitions.matrix();
         let solver = Options::new(Solver::MultilevelAggregation, 1e-10);
         let steady = match solve(&matrix, &self.space, None, &solver)? {
@@ -64,8 +60,6 @@ impl<'a> Trial<'a> {
             _ => None,
         };
         Ok(Run {
-            solved: start.elapsed().as_secs_f64() - sampled,
-            sampled,
             transitions,
             matrix,
             steady,
@@ -77,13 +71,11 @@ impl<'a> Trial<'a> {
     }
 }
 
-/// One sampled chain with its steady state, and the seconds that both took.
+/// One sampled chain with its steady state.
 struct Run {
     transitions: SampledTransitions,
     matrix: TransitionMatrix,
     steady: Option<SteadyState>,
-    sampled: f64,
-    solved: f64,
 }
 
 /// Integrals of the exact density over the cells of Ω, Σ = 1. Values at the centres would be off by O(h²).
@@ -136,12 +128,12 @@ fn expected_distance(
 }
 
 /// The same samples with densities that are flat and linear inside the cells: distance, share of sampling in it,
-/// diffusion that the cells add, turns and seconds of the solve.
+/// diffusion that the cells add, turns of the solve.
 fn corrections(system: &dyn System, grids: usize) -> Result<(), AnyError> {
     println!(
-        "| cells | samples | Δt | TV, flat | TV, linear | TV from sampling, linear | D_num, flat | D_num of x, linear | D_num of y, linear | turns | solve, s |"
+        "| cells | samples | Δt | TV, flat | TV, linear | TV from sampling, linear | D_num, flat | D_num of x, linear | D_num of y, linear | turns |"
     );
-    println!("| ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
+    println!("| ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for &(count, samples) in GRIDS.iter().take(grids.min(3)) {
         let trial = Trial::new(system, count)?;
         let integrator = Integrator::StochasticHeun;
@@ -157,9 +149,7 @@ fn corrections(system: &dyn System, grids: usize) -> Result<(), AnyError> {
                 keep_starts: true,
             })?;
             let flat = run.steady.as_ref().ok_or("no steady state in Ω")?;
-            let clock = Instant::now();
             let (corrected, found) = linear(&trial, &run, None, None)?;
-            let solved = clock.elapsed().as_secs_f64();
             let replicates: Result<Vec<_>, AnyError> = (0..run.transitions.groups())
                 .map(|group| linear_masses(&trial, &run, &corrected, group))
                 .collect();
@@ -170,7 +160,7 @@ fn corrections(system: &dyn System, grids: usize) -> Result<(), AnyError> {
                 .transitions
                 .remaining_diffusion(&trial.space, &local, &found.slopes);
             println!(
-                "| {count}² | {samples} | {map_step} | {:.4} | {:.4} | {:.4} | {:.6} | {:.6} | {:.6} | {} | {solved:.2} |",
+                "| {count}² | {samples} | {map_step} | {:.4} | {:.4} | {:.4} | {:.6} | {:.6} | {:.6} | {} |",
                 trial.distance(flat)?,
                 trial.distance(&corrected)?,
                 expected_distance(&trial, &corrected, &replicates?)?,
@@ -218,9 +208,9 @@ fn linear_masses(
 /// Map steps, grids and samples with Heun's integrator: distance, its share from sampling, numerical diffusion.
 fn map_steps(system: &dyn System, grids: usize) -> Result<(), AnyError> {
     println!(
-        "| cells | samples | Δt | TV | TV from sampling | D_num of x | D_num of y | h²/(12Δt) | sample, s | solve, s |"
+        "| cells | samples | Δt | TV | TV from sampling | D_num of x | D_num of y | h²/(12Δt) |"
     );
-    println!("| ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
+    println!("| ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for &(count, samples) in GRIDS.iter().take(grids) {
         let trial = Trial::new(system, count)?;
         let integrator = Integrator::StochasticHeun;
@@ -247,14 +237,12 @@ fn map_steps(system: &dyn System, grids: usize) -> Result<(), AnyError> {
             let width = trial.space.axes()[0].width(0);
             let name = if map_step == automatic { "auto: " } else { "" };
             println!(
-                "| {count}² | {samples} | {name}{map_step:.1} | {:.4} | {:.4} | {:.6} | {:.6} | {:.6} | {:.2} | {:.3} |",
+                "| {count}² | {samples} | {name}{map_step:.1} | {:.4} | {:.4} | {:.6} | {:.6} | {:.6} |",
                 trial.distance(steady)?,
                 sampling_error(&trial, &run, steady)?,
                 diffusion[0],
                 diffusion[1],
                 width * width / (12.0 * map_step),
-                run.sampled,
-                run.solved,
             );
         }
     }

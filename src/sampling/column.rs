@@ -4,6 +4,7 @@ use super::SamplingOptions;
 use super::end_moments::EndMoments;
 use super::integrator::Stepper;
 use super::lookup::CellLookup;
+use super::order::sort_by_cell;
 use super::phase::PhaseStep;
 use super::random::{NormalStream, OnLines, StreamKey};
 use super::starts::{StartLattice, shift};
@@ -143,18 +144,10 @@ impl<'a> ColumnSampler<'a> {
         let mut states = OnLines([[0.0; LANES]; MAX_DIMENSION]);
         let states = &mut states.0[..dimension];
         let mut stream = NormalStream::new(self.key(cell, 0));
-        let mut group = 0;
         for block in 0..samples.div_ceil(LANES) {
             let first = block * LANES;
             let count = LANES.min(samples - first);
-            let mut groups = [0; LANES];
-            for (lane, of_lane) in groups.iter_mut().enumerate().take(count) {
-                while first + lane >= self.group_starts[group + 1] {
-                    group += 1;
-                }
-                *of_lane = group;
-            }
-            self.place_starts(cell, (first, count), &groups, states, &mut offsets);
+            self.place_starts(cell, (first, count), states, &mut offsets);
             stream.restart(self.key(cell, block as u64));
             self.stepper.enter(states);
             self.stepper.advance(states, 0, self.steps, &mut stream)?;
@@ -174,19 +167,18 @@ impl<'a> ColumnSampler<'a> {
                     spreading[axis] += off * off + own;
                 }
             }
-            for (lane, &cell) in found.iter().enumerate().take(count) {
-                let end = if cell == sink { SINK } else { cell as u32 };
-                ends.push(u64::from(end) << 32 | (first + lane) as u64);
-            }
+            let numbered = found[..count].iter().zip(first as u64..);
+            ends.extend(numbered.map(|(&cell, sample)| (cell as u64) << 32 | sample));
             if keeps {
-                let start = |lane: usize| offsets.map(|axis: Lanes| axis[lane] as f32);
+                let start = |lane: usize| std::array::from_fn(|axis| offsets[axis][lane] as f32);
                 starts.extend((0..count).map(start));
                 let of_block = &starts[first..];
+                let are_all_inside = inside.clone().count() == count;
                 for (moments, (axis, lanes)) in moments
                     .iter_mut()
                     .zip(self.space.axes().iter().zip(seen.iter()))
                 {
-                    if inside.clone().count() == count {
+                    if are_all_inside {
                         moments.add(axis, &lanes[..count], of_block);
                         continue;
                     }
@@ -209,28 +201,29 @@ impl<'a> ColumnSampler<'a> {
         }
     }
 
-    /// Starts of a batch. Lanes past the last sample start in group 0 and are not counted.
+    /// Starts of a batch. Lanes past the last sample start in the middle and are not counted.
     fn place_starts(
         &self,
         cell: usize,
         (first, count): (usize, usize),
-        groups: &[usize],
         states: &mut [Lanes],
         offsets: &mut [Lanes; MAX_DIMENSION],
     ) {
-        let (mut group, mut of_group) = (usize::MAX, [0.0; MAX_DIMENSION]);
-        for (lane, &of_lane) in groups.iter().enumerate() {
-            if of_lane != group {
-                group = of_lane;
-                of_group = shift(self.key(cell, START_BLOCK + group as u64).word());
-            }
-            // Lanes past the last sample start where the first one of a group does.
-            let sample = (first + lane).saturating_sub(self.group_starts[group]);
-            let sample = if lane < count { sample } else { 0 };
+        let begun = self.group_starts.partition_point(|&start| start <= first);
+        let (mut group, mut lane) = (begun - 1, 0);
+        while lane < count {
+            let until = self.group_starts[group + 1].min(first + count) - first;
+            let of_group = shift(self.key(cell, START_BLOCK + group as u64).word());
+            let sample = first + lane - self.group_starts[group];
             let spread = offsets.iter_mut().take(self.spread.len());
             for (axis, lanes) in spread.enumerate() {
-                lanes[lane] = self.lattice.coordinate(&of_group, sample, axis);
+                let lanes = &mut lanes[lane..until];
+                self.lattice.place(&of_group, sample, axis, lanes);
             }
+            (group, lane) = (group + 1, until);
+        }
+        for lanes in offsets.iter_mut() {
+            lanes[count..].fill(0.5);
         }
         for (axis, lanes) in states.iter_mut().enumerate() {
             let edges = &self.space.axes()[axis];
@@ -254,10 +247,11 @@ impl<'a> ColumnSampler<'a> {
         mut spreading: [f64; MAX_DIMENSION],
         starts: &[[f32; MAX_DIMENSION]],
     ) -> Column {
-        ends.sort_unstable();
+        let sink = self.lookup.n_cells();
+        sort_by_cell(&mut ends, &mut Vec::new(), sink);
         let cell_of = |end: &u64| (end >> 32) as u32;
         let sample_of = |end: &u64| (end & u64::from(u32::MAX)) as usize;
-        let inside = ends.partition_point(|end| cell_of(end) != SINK);
+        let inside = ends.partition_point(|end| cell_of(end) != sink as u32);
         for sum in &mut spreading {
             *sum /= inside.max(1) as f64;
         }
@@ -265,7 +259,8 @@ impl<'a> ColumnSampler<'a> {
         let mut groups = vec![Shares::default(); self.group_starts.len() - 1];
         for of_cell in ends.chunk_by(|a, b| cell_of(a) == cell_of(b)) {
             let place = destinations.len() as u32;
-            destinations.push(cell_of(&of_cell[0]));
+            let cell = cell_of(&of_cell[0]);
+            destinations.push(if cell == sink as u32 { SINK } else { cell });
             counts.push(of_cell.len() as u32);
             let (mut rest, mut sums) = (of_cell, [0.0; MAX_DIMENSION]);
             // In this order samples of a cell are ordered by their groups too.

@@ -49,11 +49,11 @@ impl EndMoments {
             by_start[function] = self.by_start.map(|sums| sums[function]);
         }
         for (&x, start) in ends.iter().zip(starts) {
-            let (values, start) = (functions(axis, x), start.map(f64::from));
+            let values = functions(axis, x);
             for function in 0..COUNT {
                 plain[function] += values[function];
-                for (sum, start) in by_start[function].iter_mut().zip(&start) {
-                    *sum += values[function] * start;
+                for along in 0..MAX_DIMENSION {
+                    by_start[function][along] += values[function] * f64::from(start[along]);
                 }
             }
         }

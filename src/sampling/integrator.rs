@@ -5,14 +5,19 @@
 //! ω⁴dt³/4 from the damping. Euler-Maruyama has weak order 1 and takes ω²dt. Splitting (`splitting.rs`) moves positions
 //! by half a step before and after a step of Heun's of everything else, and takes nothing from the damping. Where laws
 //! alone are asked for, increments of four values (`four_point.rs`) do what normal ones do.
+//!
+//! Steps are passes over a batch, one a stage, with the drift called between them (`steps.rs`): that serves every
+//! system. A built-in oscillator has the same steps compiled in one loop with its drift (`compiled.rs`), to the same
+//! bits.
 
+use compiled::Compiled;
 pub(crate) use folds::WholeTurn;
 use folds::{Mirror, mirrors};
 use splitting::rows_of;
 pub(crate) use splitting::{Position, positions};
 use steps::{Scratch, euler_maruyama, heun};
 
-use super::random::{NormalStream, OnLines};
+use super::random::{NormalStream, ROWS};
 use crate::MAX_DIMENSION;
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::system::{LANES, Lanes, Noise, System};
@@ -56,9 +61,6 @@ impl Integrator {
     }
 }
 
-/// Rows of normals made at once: 8 KB, which stay in the first-level cache with everything else.
-const ROWS: usize = 16;
-
 /// A system with a fixed step.
 pub(crate) struct Stepper<'a> {
     system: &'a dyn System,
@@ -75,6 +77,8 @@ pub(crate) struct Stepper<'a> {
     only_increments: [Option<(f64, usize)>; MAX_DIMENSION],
     mirrors: Vec<Mirror>,
     turns: Vec<WholeTurn>,
+    /// Steps in one loop with the drift, which do the same.
+    compiled: Option<Compiled<'a>>,
     cancellation: Cancellation,
 }
 
@@ -110,7 +114,7 @@ impl<'a> Stepper<'a> {
             only_increments[axis] = only.filter(|_| !is_noisy[axis]);
             is_noisy[axis] = true;
         }
-        Self {
+        let stepper = Self {
             system,
             integrator,
             time_step,
@@ -121,16 +125,25 @@ impl<'a> Stepper<'a> {
             positions,
             mirrors: mirrors(system),
             turns: Vec::new(),
+            compiled: None,
             cancellation: cancellation.clone(),
+        };
+        Self {
+            compiled: Compiled::of(&stepper),
+            ..stepper
         }
     }
 
     /// The same with coordinates that close on themselves brought back to one turn after every step. Without it whole
     /// turns add up.
     pub(crate) fn within_a_turn(self) -> Self {
-        Self {
+        let stepper = Self {
             turns: WholeTurn::of(self.system),
             ..self
+        };
+        Self {
+            compiled: Compiled::of(&stepper),
+            ..stepper
         }
     }
 
@@ -145,23 +158,11 @@ impl<'a> Stepper<'a> {
         let channels = self.noise.len();
         // Whole pairs of rows, so that no normal is dropped but at the very end.
         let chunk = (ROWS / channels.max(1)).max(2) & !1;
-        let mut rows = OnLines([[0.0; LANES]; ROWS]);
-        let mut more = Vec::new();
-        let buffer: &mut [Lanes] = if chunk * channels <= ROWS {
-            &mut rows.0
-        } else {
-            more.resize(chunk * channels, [0.0; LANES]);
-            &mut more
-        };
-        let (mut done, mut scratch) = (0, Scratch::new());
+        let (mut done, mut scratch) = (0, None);
         while done < steps {
             self.cancellation.check()?;
             let count = chunk.min(steps - done);
-            let normals = &mut buffer[..count * channels];
-            match self.integrator.is_for_laws() {
-                true => stream.fill_for_laws(normals),
-                false => stream.fill(normals),
-            }
+            let normals = stream.draw(count * channels, self.integrator.is_for_laws());
             self.work_through(states, first + done, count, normals, &mut scratch);
             done += count;
         }
@@ -177,7 +178,7 @@ impl<'a> Stepper<'a> {
         steps: usize,
         normals: &[Lanes],
     ) {
-        self.work_through(states, first, steps, normals, &mut Scratch::new());
+        self.work_through(states, first, steps, normals, &mut None);
     }
 
     fn work_through(
@@ -186,8 +187,12 @@ impl<'a> Stepper<'a> {
         first: usize,
         steps: usize,
         normals: &[Lanes],
-        scratch: &mut Scratch,
+        scratch: &mut Option<Scratch>,
     ) {
+        if let Some(compiled) = &self.compiled {
+            return compiled.advance(self.time_step, states, &normals[..steps]);
+        }
+        let scratch = scratch.get_or_insert_with(Scratch::new);
         match self.integrator {
             Integrator::EulerMaruyama => {
                 euler_maruyama(self, states, first, steps, normals, scratch)
@@ -302,6 +307,9 @@ impl<'a> Stepper<'a> {
     }
 }
 
+mod compiled;
+#[cfg(test)]
+mod compiled_tests;
 mod folds;
 mod splitting;
 #[cfg(test)]

@@ -34,6 +34,7 @@ mod left_out;
 mod lookup;
 mod normal;
 mod options;
+mod order;
 mod phase;
 mod pilot;
 mod random;

@@ -54,9 +54,16 @@ pub(crate) fn unit(word: u64) -> f64 {
     (word >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
 }
 
+/// Rows of normals made at once: 8 KB, which stay in the first-level cache with everything else.
+pub(super) const ROWS: usize = 16;
+
 /// Independent standard normals in every lane.
 pub(crate) struct NormalStream {
     state: OnLines<[Words; 4]>,
+    /// Room for rows that are drawn.
+    rows: OnLines<[Lanes; ROWS]>,
+    /// Room for more of them.
+    more: Vec<Lanes>,
 }
 
 impl NormalStream {
@@ -64,7 +71,11 @@ impl NormalStream {
     pub(crate) fn new(key: StreamKey) -> Self {
         let mut state = OnLines([[0; LANES]; 4]);
         seed_lanes(key.word(), &mut state.0);
-        Self { state }
+        Self {
+            state,
+            rows: OnLines([[0.0; LANES]; ROWS]),
+            more: Vec::new(),
+        }
     }
 
     /// Begins anew as the stream of a key.
@@ -72,16 +83,27 @@ impl NormalStream {
         seed_lanes(key.word(), &mut self.state.0);
     }
 
+    /// The next rows of standard normals, as of [`NormalStream::fill`], or of four-point numbers, which serve for
+    /// laws as normals do. A word makes twelve of those; what is left of the last one is dropped.
+    pub(super) fn draw(&mut self, rows: usize, is_for_laws: bool) -> &[Lanes] {
+        let drawn = match rows <= ROWS {
+            true => &mut self.rows.0[..rows],
+            false => {
+                self.more.resize(rows, [0.0; LANES]);
+                &mut self.more
+            }
+        };
+        match is_for_laws {
+            true => fill_for_laws(&mut self.state.0, drawn),
+            false => fill(&mut self.state.0, drawn),
+        }
+        drawn
+    }
+
     /// Fills rows of standard normals. Numbers come in pairs of rows: after an odd number of rows the second
     /// half of the last pair is dropped.
     pub(crate) fn fill(&mut self, normals: &mut [Lanes]) {
         fill(&mut self.state.0, normals);
-    }
-
-    /// Fills rows of four-point numbers, which serve for laws as normals do. A word makes twelve rows; what is left
-    /// of the last one is dropped.
-    pub(crate) fn fill_for_laws(&mut self, rows: &mut [Lanes]) {
-        fill_for_laws(&mut self.state.0, rows);
     }
 }
 
@@ -249,8 +271,8 @@ mod tests {
     #[test]
     fn numbers_for_laws_have_their_moments_and_are_uncorrelated() {
         let rows = 40_000;
-        let mut numbers = vec![[0.0; LANES]; rows];
-        NormalStream::new(key(7, 0, 0)).fill_for_laws(&mut numbers);
+        let mut stream = NormalStream::new(key(7, 0, 0));
+        let numbers = stream.draw(rows, true);
         let n = (rows * LANES) as f64;
         let moment = |power: i32| numbers.iter().flatten().map(|x| x.powi(power)).sum::<f64>() / n;
         for (power, mean, variance) in

@@ -4,6 +4,8 @@
 //! start alone is uniform in the cell; together the points of a lattice fall one in each of as many equal strata
 //! of every axis, so a group is well spread by itself and groups are independent.
 
+use multiversion::multiversion;
+
 use crate::MAX_DIMENSION;
 use crate::sampling::random::{mix, unit};
 
@@ -20,10 +22,10 @@ const MULTIPLIERS: [&[f64]; MAX_DIMENSION] = [
     ],
 ];
 
-/// Starts for any group size of one run: where each point of the lattice is, in parts of as many strata, before it is
-/// shifted.
+/// Starts for any group size of one run: the stratum of each sample on each axis, the same of both of a pair.
 #[derive(Debug, Clone)]
 pub(super) struct StartLattice {
+    /// Points of the lattice, and strata of an axis.
     points: f64,
     strata: Vec<Vec<f64>>,
 }
@@ -48,7 +50,7 @@ impl StartLattice {
         // Generators are coprime to the number of points: every stratum has one.
         let of_axis = |generator: &usize| -> Vec<f64> {
             let strata = (0..points).map(|point| point * generator % points);
-            strata.map(|stratum| stratum as f64).collect()
+            strata.flat_map(|stratum| [stratum as f64; 2]).collect()
         };
         Self {
             points: points as f64,
@@ -56,15 +58,20 @@ impl StartLattice {
         }
     }
 
-    /// Coordinate in [0, 1) of a group's sample on one axis. Samples 2i and 2i + 1 are mirror images of each other.
-    pub(super) fn coordinate(&self, shift: &Shift, sample: usize, axis: usize) -> f64 {
-        let stratum = self.strata[axis][sample / 2];
-        let coordinate = (stratum + shift[axis]) / self.points;
-        if sample.is_multiple_of(2) {
-            coordinate
-        } else {
-            1.0 - coordinate
-        }
+    /// Coordinates in [0, 1) on one axis of a group's samples from number `first` on. Samples 2i and 2i + 1 are mirror
+    /// images of each other.
+    pub(super) fn place(&self, shift: &Shift, first: usize, axis: usize, coordinates: &mut [f64]) {
+        let strata = &self.strata[axis][first..first + coordinates.len()];
+        place(strata, shift[axis], self.points, first, coordinates);
+    }
+}
+
+#[multiversion(targets = "simd")]
+fn place(strata: &[f64], shift: f64, points: f64, first: usize, coordinates: &mut [f64]) {
+    for (index, (stratum, coordinate)) in strata.iter().zip(coordinates).enumerate() {
+        let place = (stratum + shift) / points;
+        let is_image = (first + index) & 1 == 1;
+        *coordinate = if is_image { 1.0 - place } else { place };
     }
 }
 
@@ -87,13 +94,20 @@ fn greatest_common_divisor(mut a: usize, mut b: usize) -> usize {
 mod tests {
     use super::*;
 
+    /// Coordinate of one sample.
+    fn coordinate(lattice: &StartLattice, key: u64, sample: usize, axis: usize) -> f64 {
+        let mut coordinate = [0.0];
+        lattice.place(&shift(key), sample, axis, &mut coordinate);
+        coordinate[0]
+    }
+
     #[test]
     fn every_axis_is_stratified_and_pairs_mirror() {
         for (samples, dimension) in [(250, 2), (63, 3), (16, 4), (2, 2), (1, 1)] {
             let lattice = StartLattice::new(samples, dimension);
             let points = samples.div_ceil(2);
             for axis in 0..dimension {
-                let start = |sample| lattice.coordinate(&shift(99), sample, axis);
+                let start = |sample| coordinate(&lattice, 99, sample, axis);
                 let strata = (0..points).map(|i| (start(2 * i) * points as f64) as usize);
                 let mut strata: Vec<usize> = strata.collect();
                 strata.sort_unstable();
@@ -113,7 +127,7 @@ mod tests {
         for key in 0..20 {
             let mut counts = [0_i32; 25];
             for sample in 0..250 {
-                let at = |axis| (lattice.coordinate(&shift(mix(key)), sample, axis) * 5.0) as usize;
+                let at = |axis| (coordinate(&lattice, mix(key), sample, axis) * 5.0) as usize;
                 counts[(at(0) * 5 + at(1)).min(24)] += 1;
             }
             assert!(
@@ -126,7 +140,7 @@ mod tests {
     #[test]
     fn one_start_is_uniform_over_keys() {
         let lattice = StartLattice::new(100, 2);
-        let starts = (0..4000).map(|key| lattice.coordinate(&shift(mix(key)), 7, 1));
+        let starts = (0..4000).map(|key| coordinate(&lattice, mix(key), 7, 1));
         // The shift alone is random: a start is uniform in its stratum of width 1/50.
         let place: Vec<f64> = starts.map(|start| (start * 50.0).fract()).collect();
         let mean = place.iter().sum::<f64>() / 4000.0;

@@ -1,13 +1,17 @@
 //! Oscillators put together from parts: a restoring force, a damping, a friction law, and white noise on the velocity.
 //! What they are stands in formulas; the loop over a batch of states, compiled for each pair of damping and law, is
-//! their drift.
+//! their drift, and loops with that drift inside are the steps of their trajectories (`oscillator/steps.rs`).
+
+mod steps;
+
+use std::sync::Arc;
 
 use multiversion::multiversion;
 
 use super::friction::{FrictionLaw, Motion};
 use super::parameters::{ALPHA, KAPPA, MU, Parameter, SIGMA2, X, Y};
 use super::typed::statement::AMPLITUDE;
-use super::{AxisDescription, CompiledDrift, LANES, Lanes, TypedModel};
+use super::{AxisDescription, Compiled, LANES, Lanes, TypedModel};
 
 /// Axis of the displacement of an oscillator.
 pub(crate) const DISPLACEMENT: usize = 0;
@@ -70,9 +74,27 @@ pub(super) struct Oscillator<D, F, const N: usize> {
 }
 
 impl<D: Damping + 'static, F: FrictionLaw<N> + 'static, const N: usize> Oscillator<D, F, N> {
-    /// Its drift.
-    pub(super) fn compiled(self) -> CompiledDrift {
-        Box::new(move |_, states, slopes| drift(&self, states, slopes))
+    /// Its drift, and steps in one loop with it.
+    pub(super) fn compiled(self) -> Compiled {
+        let oscillator = Arc::new(self);
+        let of_drift = Arc::clone(&oscillator);
+        Compiled {
+            drift: Box::new(move |_, states, slopes| drift(&of_drift, states, slopes)),
+            steps: Some(oscillator),
+        }
+    }
+}
+
+impl<D: Damping, F: FrictionLaw<N>, const N: usize> Oscillator<D, F, N> {
+    /// y' and z' at a state.
+    #[inline(always)]
+    fn slopes(&self, motion: Motion, state: &[f64; N]) -> (f64, [f64; N]) {
+        let rates = self.friction.rates(motion, state);
+        let damping = self.damping.coefficient(self.spring.energy(motion));
+        let force = -damping * motion.velocity
+            - self.spring.force(motion.displacement)
+            - self.friction.force(motion, state, &rates);
+        (force, rates)
     }
 }
 
@@ -105,11 +127,11 @@ pub(super) fn with_friction<A: Into<AxisDescription>>(
     oscillator(named, &force, internal, parameters).with_friction(friction)
 }
 
-/// The compiled drift of [`with_friction`] from values of its parameters; `law` is given those of the law.
+/// What is compiled of [`with_friction`], from values of its parameters; `law` is given those of the law.
 pub(super) fn compiled<F: FrictionLaw<N> + 'static, const N: usize>(
     values: &[f64],
     law: impl FnOnce(&[f64]) -> F,
-) -> CompiledDrift {
+) -> Compiled {
     Oscillator {
         spring: Duffing {
             alpha: values[0],
@@ -136,11 +158,6 @@ fn drift<D: Damping, F: FrictionLaw<N>, const N: usize>(
     ) else {
         return;
     };
-    let Oscillator {
-        spring,
-        damping,
-        friction,
-    } = oscillator;
     for lane in 0..LANES {
         let motion = Motion {
             displacement: x[lane],
@@ -150,12 +167,9 @@ fn drift<D: Damping, F: FrictionLaw<N>, const N: usize>(
         for index in 0..N {
             state[index] = z[index][lane];
         }
-        let rates = friction.rates(motion, &state);
-        let damping = damping.coefficient(spring.energy(motion));
+        let (force, rates) = oscillator.slopes(motion, &state);
         x_slope[lane] = motion.velocity;
-        y_slope[lane] = -damping * motion.velocity
-            - spring.force(motion.displacement)
-            - friction.force(motion, &state, &rates);
+        y_slope[lane] = force;
         for index in 0..N {
             z_slopes[index][lane] = rates[index];
         }

@@ -11,7 +11,7 @@ pub(super) fn model() -> TypedModel {
     let parameters = [GROWTH, SATURATION, ALPHA, MU, SIGMA2];
     oscillator(("rayleigh", title), "-(-a + b H) y - α x - μ x³", NO_STATES, parameters)
         .with_definition("H", "y²/2 + α x²/2 + μ x⁴/4")
-        .with_compiled_drift(|values| {
+        .with_compiled_oscillator(|values| {
             let (damping, spring) = parts(values);
             let friction = Frictionless;
             Oscillator { spring, damping, friction }.compiled()

@@ -13,7 +13,8 @@ use std::borrow::Cow;
 
 use super::Stepper;
 use crate::MAX_DIMENSION;
-use crate::system::{LANES, Lanes, System};
+use crate::sampling::random::OnLines;
+use crate::system::{DISPLACEMENT, LANES, Lanes, System, VELOCITY};
 
 /// A coordinate without noise whose drift is a multiple of another coordinate and a constant: a displacement, or a
 /// phase. The other one is no position.
@@ -27,6 +28,14 @@ pub(crate) struct Position {
 }
 
 impl Position {
+    /// The displacement of an oscillator, which moves with its velocity.
+    pub(super) const DISPLACEMENT: Self = Self {
+        axis: DISPLACEMENT,
+        velocity: VELOCITY,
+        factor: 1.0,
+        constant: 0.0,
+    };
+
     #[inline(always)]
     pub(super) fn advance(&self, states: &mut [Lanes], time: f64) {
         let (factor, constant) = (time * self.factor, time * self.constant);
@@ -118,7 +127,7 @@ impl Stepper<'_> {
         if self.positions.is_empty() {
             return Cow::Borrowed(states);
         }
-        let (mut seen, mut room) = (states.to_vec(), Room::default());
+        let (mut seen, mut room) = (states.to_vec(), None);
         self.shift(1.0, states, &mut seen, &mut room);
         self.reflect(&mut seen);
         self.turn_back(&mut seen);
@@ -130,10 +139,9 @@ impl Stepper<'_> {
         if self.positions.is_empty() {
             return;
         }
-        let (mut rows, mut room) = (rows_of(states), Room::default());
-        let entered = &mut rows[..states.len()];
-        let mut next = [[0.0; LANES]; MAX_DIMENSION];
-        let next = &mut next[..states.len()];
+        let (mut rows, mut next) = (OnLines(rows_of(states)), OnLines(rows_of(states)));
+        let (entered, next) = (&mut rows.0[..states.len()], &mut next.0[..states.len()]);
+        let mut room = None;
         for _ in 0..TURNS {
             next.copy_from_slice(states);
             self.shift(-1.0, entered, next, &mut room);
@@ -143,8 +151,11 @@ impl Stepper<'_> {
     }
 
     /// Adds (dt²/8) ∂F_y/∂x F_x of the rest at states, by a difference over a step of the positions, times a sign.
-    fn shift(&self, sign: f64, states: &[Lanes], shifted: &mut [Lanes], room: &mut Room) {
-        let Room { moved, up, down } = room;
+    fn shift(&self, sign: f64, states: &[Lanes], shifted: &mut [Lanes], room: &mut Option<Room>) {
+        if let Some(compiled) = &self.compiled {
+            return compiled.shift(self.time_step, sign, states, shifted);
+        }
+        let Room { moved, up, down } = room.get_or_insert_default();
         let moved = &mut moved[..states.len()];
         for (share, drift) in [(0.5, &mut *up), (-0.5, &mut *down)] {
             moved.copy_from_slice(states);

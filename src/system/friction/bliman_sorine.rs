@@ -19,7 +19,7 @@ pub(in crate::system) fn model() -> TypedModel {
         .with_equation("v", "(f_2 y - abs(y) v)/ε")
         .with_bounds("u", "-f_1", "f_1")
         .with_bounds("v", "-f_2", "f_2")
-        .with_compiled_drift(|values| {
+        .with_compiled_oscillator(|values| {
             compiled(values, |own| BlimanSorine {
                 level: [own[0], own[1]],
                 per_distance: [(own[2] * own[3]).recip(), own[2].recip()],

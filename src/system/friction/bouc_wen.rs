@@ -23,7 +23,7 @@ pub(in crate::system) fn model() -> TypedModel {
         .with_equation("z", "A y - (β abs(y) sgn(z) + γ y) abs(z)^n")
         .with_bounds("z", "-(A/(β + γ))^(1/n)", "(A/(β + γ))^(1/n)")
         .with_mended_facts(mend)
-        .with_compiled_drift(|values| match values[EXPONENT] {
+        .with_compiled_oscillator(|values| match values[EXPONENT] {
             // Exponents of one and two have loops of their own, compiled without a power.
             1.0 => compiled(values, |own| BoucWen::new(own, One)),
             2.0 => compiled(values, |own| BoucWen::new(own, Two)),

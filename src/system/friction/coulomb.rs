@@ -11,7 +11,7 @@ use crate::system::parameters::{COULOMB_LEVEL, NO_STATES};
 pub(in crate::system) fn model() -> TypedModel {
     let named = ("coulomb", "Duffing oscillator with Coulomb friction");
     with_friction(named, "f_c sgn(y)", NO_STATES, [COULOMB_LEVEL])
-        .with_compiled_drift(|values| compiled(values, |own| Coulomb { level: own[0] }))
+        .with_compiled_oscillator(|values| compiled(values, |own| Coulomb { level: own[0] }))
         .with_exact_log_density(exact_log_density)
         .with_source("the paper, Eqs. (5)-(6), with the letters of Eq. (7)")
         .with_notes([

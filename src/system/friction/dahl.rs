@@ -15,7 +15,7 @@ pub(in crate::system) fn model() -> TypedModel {
     with_friction(named, "λ z", [z], [LAMBDA, DAHL_LEVEL])
         .with_equation("z", "y - (λ abs(y)/f_c) z")
         .with_bounds("z", "-f_c/λ", "f_c/λ")
-        .with_compiled_drift(|values| compiled(values, |own| Dahl(Contact::new(own))))
+        .with_compiled_oscillator(|values| compiled(values, |own| Dahl(Contact::new(own))))
         .with_source("the paper, Eqs. (7)-(9), with z as last factor of z'; P. R. Dahl, A solid friction model (1968)")
         .with_notes([
             "The paper's Eqs. (8) and (9) print x as the last factor of z'. Dahl's law has z, and with it the paper's claims hold; the printed equations are the model `dahl_eq8`, which has no steady state.",
@@ -28,7 +28,7 @@ pub(in crate::system) fn model_eq8() -> TypedModel {
     let title = "Duffing oscillator with Dahl friction as printed (no steady state)";
     with_friction(("dahl_eq8", title), "λ z", [Z], [LAMBDA, DAHL_LEVEL])
         .with_equation("z", "y - (λ abs(y)/f_c) x")
-        .with_compiled_drift(|values| compiled(values, |own| DahlAsPrinted(Contact::new(own))))
+        .with_compiled_oscillator(|values| compiled(values, |own| DahlAsPrinted(Contact::new(own))))
         .with_source("the paper, Eqs. (8)-(9), as printed")
         .with_notes([
             "The print has x as the last factor of z', where Dahl's law has z (model `dahl`). Nothing then holds z back: it is not bounded, it runs away, and the system has no steady state.",

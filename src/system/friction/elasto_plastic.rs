@@ -25,7 +25,7 @@ pub(in crate::system) fn model() -> TypedModel {
     .with_definition("a", "(1 - cos(π s))/2")
     .with_definition("s", "min(max((w - f_b)/f_t, 0), 1)")
     .with_bounds("z", "-(f_b + f_t)/λ", "(f_b + f_t)/λ")
-    .with_compiled_drift(|values| {
+    .with_compiled_oscillator(|values| {
         compiled(values, |own| ElastoPlastic {
             stiffness: own[0],
             damping: own[1],

@@ -25,7 +25,7 @@ pub(in crate::system) fn model() -> TypedModel {
         .with_definition("g", "f_c + (f_s - f_c) exp(-(y/v_s)²)")
         // Beyond the largest level the bristles are never bent.
         .with_bounds("z", "-max(f_c, f_s)/λ", "max(f_c, f_s)/λ")
-        .with_compiled_drift(|values| {
+        .with_compiled_oscillator(|values| {
             compiled(values, |own| LuGre {
                 stiffness: own[0],
                 damping: own[1],

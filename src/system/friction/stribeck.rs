@@ -31,7 +31,7 @@ pub(in crate::system) fn model() -> TypedModel {
     with_friction(("stribeck", title), "g sgn(u)", NO_STATES, own)
         .with_definition("u", "y - v_b")
         .with_definition("g", "f_c + (f_s - f_c) exp(-(u/v_s)²)")
-        .with_compiled_drift(|values| {
+        .with_compiled_oscillator(|values| {
             compiled(values, |own| Sliding {
                 force: StribeckLevel::new(own[0], own[1], own[2]),
                 base: own[3],
@@ -55,7 +55,7 @@ pub(in crate::system) fn model_cubic() -> TypedModel {
     with_friction(("stribeck_cubic", title), "F", NO_STATES, own)
         .with_definition("u", "y - v_b")
         .with_definition("F", "f_s sgn(u) - (3/2) (f_s - f_m) (u/v_m - (u/v_m)³/3)")
-        .with_compiled_drift(|values| {
+        .with_compiled_oscillator(|values| {
             compiled(values, |own| Sliding {
                 force: CubicForce::new(own[0], own[1], own[2]),
                 base: own[3],

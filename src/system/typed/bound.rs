@@ -2,13 +2,15 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::CompiledDrift;
+use super::Compiled;
 use super::hysteresis;
 use super::read::Reading;
 use crate::formula::analysis::Reflection;
 use crate::formula::graph::{Expression, Point};
 use crate::formula::tape::Program;
-use crate::system::{Facts, LANES, Lanes, Noise, SwitchingSurface, Symmetry, System};
+use crate::system::{
+    CompiledSteps, Facts, LANES, Lanes, Noise, SwitchingSurface, Symmetry, System,
+};
 
 /// Largest distance of a bound from the mirror image of the other, as a share of the range, that is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -26,7 +28,7 @@ pub(super) fn bind(reading: &Arc<Reading>, values: &[f64]) -> Arc<dyn System> {
         Err(_) => Noise::constant(axis, f64::NAN),
     };
     Arc::new(Typed {
-        drift: drift(reading, values),
+        compiled: compiled(reading, values),
         noises: amplitudes.map(noise).collect(),
         values: values.to_vec(),
         facts: OnceLock::new(),
@@ -34,15 +36,18 @@ pub(super) fn bind(reading: &Arc<Reading>, values: &[f64]) -> Arc<dyn System> {
     })
 }
 
-/// The compiled drift, else that of the formulas.
-fn drift(reading: &Reading, values: &[f64]) -> CompiledDrift {
-    if let Some(compiled) = &reading.extras.drift {
-        return compiled(values);
+/// What is compiled in, else the drift of the formulas.
+fn compiled(reading: &Reading, values: &[f64]) -> Compiled {
+    if let Some(bind) = &reading.extras.compiled {
+        return bind(values);
     }
-    match reading.drift.bind(values) {
-        Ok(tape) => Box::new(move |time, states, drift| tape.run(time, states, drift)),
-        // The formulas with these values need more room than a tape has.
-        Err(_) => Box::new(|_, _, drift| drift.fill([f64::NAN; LANES])),
+    Compiled {
+        drift: match reading.drift.bind(values) {
+            Ok(tape) => Box::new(move |time, states, drift| tape.run(time, states, drift)),
+            // The formulas with these values need more room than a tape has.
+            Err(_) => Box::new(|_, _, drift| drift.fill([f64::NAN; LANES])),
+        },
+        steps: None,
     }
 }
 
@@ -50,7 +55,7 @@ fn drift(reading: &Reading, values: &[f64]) -> CompiledDrift {
 struct Typed {
     reading: Arc<Reading>,
     values: Vec<f64>,
-    drift: CompiledDrift,
+    compiled: Compiled,
     noises: Vec<Noise>,
     /// Looked for when first asked for.
     facts: OnceLock<Facts>,
@@ -149,7 +154,11 @@ impl System for Typed {
     }
 
     fn drift(&self, time: f64, states: &[Lanes], drift: &mut [Lanes]) {
-        (self.drift)(time, states, drift);
+        (self.compiled.drift)(time, states, drift);
+    }
+
+    fn compiled_steps(&self) -> Option<&dyn CompiledSteps> {
+        self.compiled.steps.as_deref()
     }
 
     fn noises(&self) -> &[Noise] {

@@ -3,13 +3,20 @@
 use std::sync::Arc;
 
 use super::TypedModel;
-use crate::system::{Facts, Lanes};
+use crate::system::{CompiledSteps, Facts, Lanes};
 
 /// Drift of a batch: time and states in, slopes out.
 pub type CompiledDrift = Box<dyn Fn(f64, &[Lanes], &mut [Lanes]) + Send + Sync>;
 
-/// Makes a drift from values of the parameters.
-type BindDrift = dyn Fn(&[f64]) -> CompiledDrift + Send + Sync;
+/// What of a model with its values is compiled.
+pub(in crate::system) struct Compiled {
+    pub(in crate::system) drift: CompiledDrift,
+    /// Steps in one loop with the drift, of an oscillator.
+    pub(in crate::system) steps: Option<Arc<dyn CompiledSteps>>,
+}
+
+/// Makes what is compiled from values of the parameters.
+type BindCompiled = dyn Fn(&[f64]) -> Compiled + Send + Sync;
 
 /// Logarithm of a density at values of the parameters and a state.
 type LogDensity = fn(&[f64], &[f64]) -> Option<f64>;
@@ -17,7 +24,7 @@ type LogDensity = fn(&[f64], &[f64]) -> Option<f64>;
 /// What a model may have beside its formulas.
 #[derive(Clone, Default)]
 pub(super) struct Extras {
-    pub(super) drift: Option<Arc<BindDrift>>,
+    pub(super) compiled: Option<Arc<BindCompiled>>,
     pub(super) log_density: Option<LogDensity>,
     /// Mends what the formulas tell, given values of the parameters.
     pub(super) facts: Option<fn(&[f64], &mut Facts)>,
@@ -28,7 +35,7 @@ pub(super) struct Extras {
 impl std::fmt::Debug for Extras {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut shown = f.debug_struct("Extras");
-        shown.field("drift", &self.drift.is_some());
+        shown.field("compiled", &self.compiled.is_some());
         shown.field("friction", &self.friction);
         shown.finish_non_exhaustive()
     }
@@ -59,7 +66,20 @@ impl TypedModel {
         mut self,
         bind: impl Fn(&[f64]) -> CompiledDrift + Send + Sync + 'static,
     ) -> Self {
-        self.extras.drift = Some(Arc::new(bind));
+        self.extras.compiled = Some(Arc::new(move |values: &[f64]| Compiled {
+            drift: bind(values),
+            steps: None,
+        }));
+        self
+    }
+
+    /// The same of an oscillator, whose steps are compiled too.
+    #[must_use]
+    pub(in crate::system) fn with_compiled_oscillator(
+        mut self,
+        bind: impl Fn(&[f64]) -> Compiled + Send + Sync + 'static,
+    ) -> Self {
+        self.extras.compiled = Some(Arc::new(bind));
         self
     }
 
@@ -86,6 +106,6 @@ impl TypedModel {
     }
 
     pub(super) fn is_compiled(&self) -> bool {
-        self.extras.drift.is_some()
+        self.extras.compiled.is_some()
     }
 }

@@ -26,6 +26,7 @@ use super::{AxisDescription, Model, NoiseKind, ParameterDescription};
 use crate::formula::language::typeset_name;
 use compiled::Extras;
 
+pub(super) use compiled::Compiled;
 pub use compiled::CompiledDrift;
 pub(crate) use equations::FormulaHazard;
 pub use equations::TypedEquations;
