@@ -4,7 +4,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::{LANES, Lanes, Model, PHASE_AXIS, SystemError};
+use super::{LANES, Lanes, Model, PHASE_AXIS, SystemError, TypedEquations};
 use crate::formula::graph::{Expression, Graph, Symbol};
 use crate::formula::language::FormulaError;
 use crate::formula::scope::{DefinitionError, DefinitionFault, Scope, SymbolError, Symbols};
@@ -20,6 +20,26 @@ pub struct Quantity {
     states: Vec<bool>,
     parameters: Vec<String>,
     at_phase: Option<AtPhase>,
+    /// The angles that it depends on.
+    turns: Vec<Turn>,
+}
+
+/// An angle: its axis, and the ends of its range, which are one place.
+#[derive(Debug, Clone, Copy)]
+struct Turn {
+    axis: usize,
+    ends: (f64, f64),
+}
+
+impl Turn {
+    /// The places in the range that these angles are; those in the range, its ends among them, stay as they are.
+    fn in_range(&self, angles: &Lanes) -> Lanes {
+        let (from, to) = self.ends;
+        angles.map(|angle| match from <= angle && angle <= to {
+            true => angle,
+            false => from + (angle - from).rem_euclid(to - from),
+        })
+    }
 }
 
 /// An axis of the state at a phase of the forcing, in place of the whole period.
@@ -52,6 +72,7 @@ impl AtPhase {
 pub struct BoundQuantity {
     tape: Tape,
     states: Vec<bool>,
+    turns: Vec<Turn>,
 }
 
 /// What is wrong with a quantity.
@@ -250,6 +271,7 @@ impl Quantity {
             },
             formula: formula.map(str::to_owned),
             program,
+            turns: turns(model, &states),
             states,
             parameters: parameters.collect(),
             at_phase: None,
@@ -277,6 +299,7 @@ impl Quantity {
             states: (0..states).map(|axis| axis == at.axis).collect(),
             parameters: Vec::new(),
             at_phase: Some(at),
+            turns: Vec::new(),
         })
     }
 
@@ -326,9 +349,19 @@ impl Quantity {
         let tape = tape.map_err(|_| SystemError::QuantityNotBound {
             quantity: self.name.clone(),
         })?;
-        let states = self.states.clone();
-        Ok(BoundQuantity { tape, states })
+        Ok(BoundQuantity {
+            tape,
+            states: self.states.clone(),
+            turns: self.turns.clone(),
+        })
     }
+}
+
+/// The angles of a model among some of its states.
+fn turns(model: &Model, states: &[bool]) -> Vec<Turn> {
+    let known = model.formulas().into_iter().flat_map(TypedEquations::turns);
+    let turns = known.filter(|&(axis, _)| states.get(axis).copied().unwrap_or(false));
+    turns.map(|(axis, ends)| Turn { axis, ends }).collect()
 }
 
 impl BoundQuantity {
@@ -337,10 +370,19 @@ impl BoundQuantity {
         &self.states
     }
 
-    /// Values at a batch of states, `states[axis][lane]`; NaN or infinite where the formula has no value.
+    /// Values at a batch of states, `states[axis][lane]`; NaN or infinite where the formula has no value. An angle that
+    /// has gone beyond its range is taken back by whole turns.
     pub fn values(&self, states: &[Lanes]) -> Lanes {
         let mut values = [[f64::NAN; LANES]];
-        self.tape.run(0.0, states, &mut values);
+        if self.turns.is_empty() {
+            self.tape.run(0.0, states, &mut values);
+            return values[0];
+        }
+        let mut within = states.to_vec();
+        for turn in &self.turns {
+            within[turn.axis] = turn.in_range(&states[turn.axis]);
+        }
+        self.tape.run(0.0, &within, &mut values);
         values[0]
     }
 

@@ -20,6 +20,7 @@ mod located;
 mod location;
 mod long_passages;
 mod means_of_formulas;
+mod modal_passages;
 mod moving_jump;
 mod natural_ends;
 mod near_borders;

@@ -6,8 +6,8 @@
 //! these. The factors of the steady state that is there serve for it.
 //!
 //! Axes of Hermite modes, of coloured noise, are asked for what is watched, and these and harmonics of angles for means
-//! and deviations. Along friction states and phases the answer takes a fifth of a sweep's time, and the modes of friction
-//! states are judged by what the last of them carry.
+//! and deviations. Along friction states and phases the answer takes a fifth of a sweep's time, and the modes of
+//! friction states are judged by what the last of them carry.
 
 use super::session::{GeneratorSession, PointSolve};
 use super::truncation::OF_AN_ANSWER;
@@ -22,8 +22,8 @@ use crate::space::{Axis, CellSpace, Series};
 const SAFETY: f64 = 2.0;
 
 impl GeneratorSession {
-    /// Adds to densities of solved masses what the last modes of all axes of coloured noise change in them. The unknowns
-    /// without these modes, where there are any.
+    /// Adds to densities of solved masses what the last modes of all axes of coloured noise change in them. Gives the
+    /// unknowns without these modes, where there are any.
     pub(super) fn add_last_modes(
         &mut self,
         solved: &PointSolve,

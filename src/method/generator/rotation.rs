@@ -7,8 +7,9 @@
 //! harmonics of the angle all integrals are sums over nodes.
 //!
 //! The error of both is what the second scheme changes (to first order, with the factors at hand), the last two
-//! harmonics where they were left out, what the solver leaves, and what the ends of other ranges do: as much as the mean
-//! along such an axis is shifted, times what the velocity at the end, and for the diffusion r/p there, is more by.
+//! harmonics where they were left out, what the solver leaves, and what the ends of other ranges do. That is as much as
+//! the mean along such an axis is shifted by, times the slope of a along the axis to the end; for the diffusion times
+//! r/p at the end too.
 
 use sprs::CsMat;
 

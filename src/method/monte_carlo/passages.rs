@@ -10,7 +10,7 @@ use crate::monte_carlo::{
     first_passages,
 };
 use crate::passage::{Passage, Start};
-use crate::system::System;
+use crate::system::{BoundQuantity, System};
 
 /// Exits, or transitions, from which numbers are made, at least.
 pub(super) const FEWEST: usize = 10;
@@ -26,6 +26,9 @@ pub(super) struct Setting<'a> {
     /// Settled states.
     pub(super) states: &'a [Vec<f64>],
 }
+
+/// Part of a turn that an angle makes within a time step, at most.
+const PART_OF_A_TURN: f64 = 1.0 / 32.0;
 
 impl Setting<'_> {
     /// Adds the numbers of all passages at a value to a report, with findings.
@@ -104,9 +107,10 @@ impl Setting<'_> {
         };
         let budget = MonteCarloOptions::PASSAGE_STEPS;
         // A pair of paths takes three steps, a whole one and two halves.
-        let affordable = budget / (3 * options.passages) as f64 * plan.time_step;
+        let time_step = self.time_step(system, [&asked.until]);
+        let affordable = budget / (3 * options.passages) as f64 * time_step;
         let mut run = PassageRun {
-            time_step: plan.time_step,
+            time_step,
             integrator: options.integrator,
             seed: options.seed,
             paths: options.passages,
@@ -136,5 +140,26 @@ impl Setting<'_> {
             }
             run.time_step *= 0.5;
         }
+    }
+
+    /// The time step with which it is looked for whether regions are met: where it is left to the program, one in which
+    /// an angle on which a region depends turns little. A drift that is the same everywhere allows any step otherwise.
+    pub(super) fn time_step<const N: usize>(
+        &self,
+        system: &dyn System,
+        regions: [&BoundQuantity; N],
+    ) -> f64 {
+        let (space, own) = (self.problem.space(), self.plan.time_step);
+        if self.options.time_step != StepChoice::Auto {
+            return own;
+        }
+        let turns = system.facts().turns.iter();
+        let looked_at = turns.filter(|(axis, _)| regions.iter().any(|one| one.states()[**axis]));
+        looked_at.fold(own, |step, (&axis, &(from, to))| {
+            let speeds = (0..space.n_cells())
+                .map(|cell| system.drift_at(0.0, &space.node(cell))[axis].abs());
+            let fastest = speeds.filter(|speed| speed.is_finite()).fold(0.0, f64::max);
+            step.min(PART_OF_A_TURN * (to - from) / fastest.max(f64::MIN_POSITIVE))
+        })
     }
 }

@@ -45,14 +45,15 @@ impl Setting<'_> {
         cancellation: &Cancellation,
     ) -> Result<Counted, MethodError> {
         let (options, plan, space) = (self.options, self.plan, self.problem.space());
+        let time_step = self.time_step(system, regions);
         // All pairs of trajectories together last as long as the paths of a passage may.
-        let steps = |longest: f64| (3 * options.passages) as f64 * longest / plan.time_step;
+        let steps = |longest: f64| (3 * options.passages) as f64 * longest / time_step;
         let most_steps = match options.longest_passage {
             StepChoice::Fixed(longest) => steps(longest),
             StepChoice::Auto => MonteCarloOptions::PASSAGE_STEPS,
         };
         let mut run = TransitionRun {
-            time_step: plan.time_step,
+            time_step,
             integrator: options.integrator,
             seed: options.seed,
             burn_in: plan.burn_in,

@@ -262,7 +262,8 @@ impl Axis {
     }
 
     /// Of an axis of modes, what the value of a function at each node adds to that at a place, where the function is a
-    /// polynomial, or trigonometric, of the degree that the nodes tell. Beyond the outermost nodes it is what it is there.
+    /// polynomial, or trigonometric, of the degree that the nodes tell. Beyond the outermost nodes it is what it is at
+    /// them.
     pub(crate) fn interpolation(&self, x: f64) -> Vec<f64> {
         let count = self.count();
         if self.is_closed() {

@@ -37,6 +37,12 @@ pub(crate) struct FormulaHazard {
 }
 
 impl TypedEquations {
+    /// Axes that are angles, with the ends of their ranges.
+    pub(in crate::system) fn turns(&self) -> impl Iterator<Item = (usize, (f64, f64))> {
+        let turns = self.reading.turns.of_axes.iter();
+        turns.map(|(&axis, &ends)| (axis, ends))
+    }
+
     pub(super) fn new(model: TypedModel, reading: Arc<Reading>) -> Self {
         Self { model, reading }
     }
