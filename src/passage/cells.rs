@@ -39,7 +39,8 @@ pub(super) struct PassageCells {
 }
 
 /// Finds the cells of a passage that ends where `level` is negative, `factor` times as many an axis as the space has.
-/// With any other factor than one, axes of modes are without their last ones. `parts` are the levels of parts of that region that are told apart, if there are any.
+/// With any other factor than one, axes of modes are without their last ones. `parts` are the levels of parts of that
+/// region that are told apart, if there are any.
 ///
 /// # Errors
 /// [`PassageError::Nowhere`], [`PassageError::Everywhere`] and [`PassageError::Between`]; errors of the level, and
