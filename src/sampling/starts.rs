@@ -23,22 +23,22 @@ const MULTIPLIERS: [&[f64]; MAX_DIMENSION] = [
 /// Starts for any group size of one run: where each point of the lattice is, in parts of as many strata, before it is
 /// shifted.
 #[derive(Debug, Clone)]
-pub(super) struct StartLattice {
+pub(crate) struct StartLattice {
     points: f64,
     strata: Vec<Vec<f64>>,
 }
 
 /// By how much the lattice of a group is shifted, an axis.
-pub(super) type Shift = [f64; MAX_DIMENSION];
+pub(crate) type Shift = [f64; MAX_DIMENSION];
 
 /// The shift of the lattice of a cell's group, to which `key` belongs.
-pub(super) fn shift(key: u64) -> Shift {
+pub(crate) fn shift(key: u64) -> Shift {
     std::array::from_fn(|axis| unit(mix(key.wrapping_add(axis as u64))))
 }
 
 impl StartLattice {
     /// A lattice for `samples` starts, mirror images included, in `dimension` axes.
-    pub(super) fn new(samples: usize, dimension: usize) -> Self {
+    pub(crate) fn new(samples: usize, dimension: usize) -> Self {
         let points = samples.div_ceil(2).max(1);
         let mut generators = [1; MAX_DIMENSION];
         let multipliers = MULTIPLIERS[dimension.clamp(1, MAX_DIMENSION) - 1];
@@ -57,7 +57,7 @@ impl StartLattice {
     }
 
     /// Coordinate in [0, 1) of a group's sample on one axis. Samples 2i and 2i + 1 are mirror images of each other.
-    pub(super) fn coordinate(&self, shift: &Shift, sample: usize, axis: usize) -> f64 {
+    pub(crate) fn coordinate(&self, shift: &Shift, sample: usize, axis: usize) -> f64 {
         let stratum = self.strata[axis][sample / 2];
         let coordinate = (stratum + shift[axis]) / self.points;
         if sample.is_multiple_of(2) {
