@@ -17,6 +17,9 @@ use crate::space::CellSpace;
 /// Residual from which on a solution is none.
 const LARGEST_RESIDUAL: f64 = 1e-3;
 
+/// Paths that are thought to end where none does, for the binomial error of a probability.
+const HALF_A_PATH: f64 = 0.5;
+
 /// Share of a mean time that its error may have.
 const LARGEST_ERROR: f64 = 1.0;
 
@@ -86,12 +89,15 @@ pub(super) fn with_errors(
         true => other - value,
         false => value,
     };
+    // Where no path ends, or all do, groups do not differ: a probability is known to a part of a path at best.
+    let probabilities = 3..3 + map.asked.exits + times.count();
+    let least = HALF_A_PATH.sqrt() / map.start_paths() as f64;
     let one = |(number, (&value, &doubt)): (usize, (&f64, &f64))| {
         let sampling = jackknife(without.iter().map(|numbers| numbers[number]));
-        let sampling = if sampling.is_finite() {
-            sampling
-        } else {
-            value
+        let sampling = match (sampling.is_finite(), probabilities.contains(&number)) {
+            (false, _) => value,
+            (true, true) => sampling.max(least),
+            (true, false) => sampling,
         };
         let [step, of_cells] = [0, 1].map(|place| known(both[place][number], value));
         let density = match starts.is_empty() {

@@ -196,6 +196,18 @@ fn reached(column: &Column) -> impl Iterator<Item = usize> + '_ {
 }
 
 impl PassageMap {
+    /// Number of paths of the start.
+    pub(super) fn start_paths(&self) -> usize {
+        let column = |start: &StartColumn| -> usize {
+            let column = match start {
+                StartColumn::State(column) | StartColumn::Cell(_, Some(column)) => column,
+                StartColumn::Cell(cell, None) => &self.columns[*cell],
+            };
+            column.groups.iter().map(|group| group.paths).sum()
+        };
+        self.starts.iter().map(column).sum()
+    }
+
     /// Numbers of cells in the space become places in the list of cells; of cells without paths, a place that no cell
     /// has.
     fn numbered(mut self, space: &CellSpace) -> Self {

@@ -53,6 +53,11 @@ impl Times {
         }
     }
 
+    /// How many probabilities are asked for.
+    pub(super) fn count(&self) -> usize {
+        self.times.len()
+    }
+
     /// Looks at parts of a map step.
     fn parts(&self, map_step: f64) -> Vec<(f64, usize)> {
         let parts = (0..PARTS).map(|part| map_step * part as f64 / PARTS as f64);

@@ -96,11 +96,6 @@ fn transitions_are_between_two_regions_and_reactive_fields_have_their_numbers() 
     let asked = passage("transitions = \"on\"");
     let sampled = parse(&asked, &["method.kind=monte-carlo"]).unwrap();
     assert!(sampled.family.questions.passages[0].transitions.is_some());
-    // Times of first passage alone are worked out by all methods.
-    let plain = passage("times = [1]");
-    for method in ["generator", "sgcm", "monte-carlo"] {
-        parse(&plain, &[&format!("method.kind={method}")]).unwrap();
-    }
     for (text, method) in [
         (&fields, "monte-carlo"),
         (&fields, "sgcm"),
