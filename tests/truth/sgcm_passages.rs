@@ -134,3 +134,17 @@ fn stated_errors_of_sampled_maps_hold() {
     // Numbers of a case err together, so that 28 of them are about 12 independent ones: 1 ± 0.2.
     assert!((0.4..1.5).contains(&share), "{share}");
 }
+
+#[test]
+fn numbers_are_the_same_bits_on_any_number_of_threads() {
+    let case = &cases()[0];
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let numbers = || {
+            let (_, solution) = solved(&case.text(), "method.samples=50", None);
+            ["p_mean", "p_sd", "p_rate"].map(|name| measure(&solution, name))
+        };
+        pool.build().unwrap().install(numbers)
+    };
+    assert_eq!(with(1), with(3));
+}

@@ -316,3 +316,6 @@ impl Start {
         start
     }
 }
+
+#[cfg(test)]
+mod tests;
