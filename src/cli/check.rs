@@ -114,7 +114,12 @@ fn sgcm_costs(spec: &Sweep, cost: &SgcmCost) -> Vec<String> {
         ),
         None => "time steps: chosen when the sweep runs (a step is \"auto\")".to_owned(),
     };
-    vec![
+    let passages = spec.problem.family().questions.passages.len();
+    let [least, most] = SgcmCost::PASSAGE_PATHS;
+    let passages = (passages > 0).then(|| {
+        format!("passages: {passages} a point, {least} to {most} pairs of paths a cell each")
+    });
+    let mut costs = vec![
         format!(
             "memory: {} to {} (every cell reaches 2^d others; every sample ends in a cell of its own)",
             bytes_in_words(cost.least_bytes),
@@ -125,7 +130,9 @@ fn sgcm_costs(spec: &Sweep, cost: &SgcmCost) -> Vec<String> {
             cost.trajectories, spec.settings.method.sgcm.samples
         ),
         steps,
-    ]
+    ];
+    costs.extend(passages);
+    costs
 }
 
 fn monte_carlo_costs(spec: &Sweep, cost: &MonteCarloCost) -> Vec<String> {

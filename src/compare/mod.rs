@@ -22,7 +22,7 @@ pub use agreement::Agreement;
 pub use distance::{Distance, Distances, distances};
 pub(crate) use exact::exact_density;
 pub use exact::exact_masses;
-pub(crate) use measures::MeasurePair;
+pub(crate) use measures::ComparedMeasure;
 pub use method::Method;
 pub use observer::CompareObserver;
 pub use solve::{Solved, Work};

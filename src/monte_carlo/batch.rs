@@ -31,6 +31,9 @@ pub(super) enum Purpose {
     Tangent = 10,
     Transition = 11,
     Meeting = 12,
+    Map = 13,
+    MapStart = 14,
+    MapChance = 15,
 }
 
 /// Key of one batch's stream.

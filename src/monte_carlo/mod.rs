@@ -14,6 +14,7 @@
 mod advances;
 mod autocorrelation;
 mod batch;
+mod cell_paths;
 mod crossings;
 mod ensemble;
 mod ergodic;
@@ -34,6 +35,7 @@ mod walk;
 mod watched;
 
 pub use advances::Rotation;
+pub(crate) use cell_paths::{CellPath, CellPaths, CellRun, PathEnd, PathsFrom};
 pub use ensemble::{EnsembleRun, ensemble};
 pub use ergodic::{ErgodicRun, ergodic};
 pub(crate) use estimate::BLOCKS;

@@ -6,6 +6,7 @@
 //! when the probability that it has not been inside falls below a random number of its own.
 
 use super::batch::{Limits, Purpose, key};
+use crate::MAX_DIMENSION;
 use crate::sampling::{Stepper, mix, unit};
 use crate::space::CellSpace;
 use crate::system::{BoundQuantity, LANES, Lanes, System};
@@ -249,6 +250,15 @@ impl<'a> Walk<'a> {
         self.ages[lane] = 0;
         self.going[lane] = true;
         self.times[lane] = f64::INFINITY;
+    }
+
+    /// Where a path is.
+    pub(super) fn state(&self, lane: usize) -> [f64; MAX_DIMENSION] {
+        let mut state = [0.0; MAX_DIMENSION];
+        for (x, lanes) in state.iter_mut().zip(&self.states) {
+            *x = lanes[lane];
+        }
+        state
     }
 
     pub(super) fn step(&mut self, normals: &[Lanes], chances: &[Chance; LANES]) {

@@ -48,7 +48,7 @@ pub(super) fn passage_in_words(family: &Family, passage: usize, fault: PassageFa
         }
         PassageFault::Never => "the region that is waited for is never entered from its start",
         PassageFault::Rounding => {
-            "its mean time is not known to its own size: finer cells know more, unless it starts on the border, where the time is zero, or part of the paths never end, or it is so long beside the times in which states move that rounding decides (from about 1e13 times on)"
+            "its mean time is not known to its own size: finer cells and, by SGCM, more samples know more, unless it starts on the border, where the time is zero, or part of the paths never end, or it is so long beside the times in which states move that rounding decides (from about 1e13 times on)"
         }
         PassageFault::Unsolved => {
             "its equations were not solved: use more cells, above all where the border lies within a few cells of an end, or give it more memory (`method.memory_limit`), unless part of the paths never end or a formula has no number somewhere in the range"

@@ -54,6 +54,7 @@ pub(crate) use pilot::stand_still;
 pub use pilot::{Pilot, pilot};
 pub(crate) use random::{NormalStream, StreamKey, mix, unit};
 pub(crate) use settling::{hull, settled};
+pub(crate) use starts::{StartLattice, shift};
 pub use transition::{SampledTransitions, TransitionMatrix};
 
 /// Why transitions could not be sampled.

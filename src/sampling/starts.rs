@@ -24,23 +24,23 @@ const MULTIPLIERS: [&[f64]; MAX_DIMENSION] = [
 
 /// Starts for any group size of one run: the stratum of each sample on each axis, the same of both of a pair.
 #[derive(Debug, Clone)]
-pub(super) struct StartLattice {
+pub(crate) struct StartLattice {
     /// Points of the lattice, and strata of an axis.
     points: f64,
     strata: Vec<Vec<f64>>,
 }
 
 /// By how much the lattice of a group is shifted, an axis.
-pub(super) type Shift = [f64; MAX_DIMENSION];
+pub(crate) type Shift = [f64; MAX_DIMENSION];
 
 /// The shift of the lattice of a cell's group, to which `key` belongs.
-pub(super) fn shift(key: u64) -> Shift {
+pub(crate) fn shift(key: u64) -> Shift {
     std::array::from_fn(|axis| unit(mix(key.wrapping_add(axis as u64))))
 }
 
 impl StartLattice {
     /// A lattice for `samples` starts, mirror images included, in `dimension` axes.
-    pub(super) fn new(samples: usize, dimension: usize) -> Self {
+    pub(crate) fn new(samples: usize, dimension: usize) -> Self {
         let points = samples.div_ceil(2).max(1);
         let mut generators = [1; MAX_DIMENSION];
         let multipliers = MULTIPLIERS[dimension.clamp(1, MAX_DIMENSION) - 1];
@@ -56,6 +56,13 @@ impl StartLattice {
             points: points as f64,
             strata: generators.iter().map(of_axis).collect(),
         }
+    }
+
+    /// Coordinate in [0, 1) of a group's sample on one axis.
+    pub(crate) fn coordinate(&self, shift: &Shift, sample: usize, axis: usize) -> f64 {
+        let mut coordinate = [0.0];
+        self.place(shift, sample, axis, &mut coordinate);
+        coordinate[0]
     }
 
     /// Coordinates in [0, 1) on one axis of a group's samples from number `first` on. Samples 2i and 2i + 1 are mirror
@@ -96,9 +103,7 @@ mod tests {
 
     /// Coordinate of one sample.
     fn coordinate(lattice: &StartLattice, key: u64, sample: usize, axis: usize) -> f64 {
-        let mut coordinate = [0.0];
-        lattice.place(&shift(key), sample, axis, &mut coordinate);
-        coordinate[0]
+        lattice.coordinate(&shift(key), sample, axis)
     }
 
     #[test]

@@ -451,6 +451,16 @@ fn monte_carlo_and_a_comparison_give_the_numbers_of_the_generator() {
         .find(|row| &row["measure"] == "leave_mean")
         .unwrap();
     assert!(row.number("errors_apart").abs() < 4.0);
+    let of_passages = table.iter().filter(|row| {
+        let name = &row["measure"];
+        name.starts_with("leave_") || name.starts_with("between_")
+    });
+    for row in of_passages {
+        let [value, error, apart] = row.numbers(["sgcm", "sgcm_error", "sgcm_errors_apart"]);
+        let name = &row["measure"];
+        println!("{name} by SGCM: {value} ± {error}, {apart} errors apart");
+        assert!(apart.abs() < 4.0 && error < 0.2 * value, "{name}");
+    }
     // On other cells, so that time steps are the same but for rounding.
     for (by, run) in ["generator", "monte_carlo"].iter().zip(&rows) {
         let [value, error] = run[0].numbers(["leave_mean", "leave_mean_error"]);

@@ -33,6 +33,7 @@ mod power_tails;
 mod random_systems;
 mod sampled_passages;
 mod sampled_transitions;
+mod sgcm_passages;
 mod slow_modes;
 mod spectra;
 mod transitions;

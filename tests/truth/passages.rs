@@ -65,7 +65,13 @@ fn holds(what: &str, (value, error): WithError, exact: f64, largest: f64) -> f64
 
 /// Mean and standard deviation of the time from a to b > a of dx = -U'(x) dt + √(2D) dW, nothing below `low`.
 /// T(a) = (1/D) ∫_a^b e^{U(y)/D} ∫_low^y e^{-U(z)/D} f(z) dz dy with f = 1 for the mean, and 2 T for the square.
-fn by_quadrature(u: impl Fn(f64) -> f64, d: f64, a: f64, b: f64, low: f64) -> (f64, f64) {
+pub(crate) fn by_quadrature(
+    u: impl Fn(f64) -> f64,
+    d: f64,
+    a: f64,
+    b: f64,
+    low: f64,
+) -> (f64, f64) {
     let steps = 40_000;
     let h = (b - low) / f64::from(steps);
     // The times from every point, from b downward, for a gain f at the points and between them.

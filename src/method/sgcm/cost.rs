@@ -6,6 +6,7 @@
 //! cell end in at most `samples` cells, and in at most all of them; the image of a box generally overlaps at least
 //! 2^d boxes. The solver's coarser levels at most double the transitions.
 
+use super::passages::CELL_PATHS;
 use super::{Correction, SgcmOptions};
 use crate::MAX_DIMENSION;
 use crate::method::StepChoice;
@@ -22,6 +23,11 @@ pub(crate) struct SgcmCost {
     pub(crate) trajectories: f64,
     /// Time steps of a trajectory; `None` where a step is chosen when the sweep runs.
     pub(crate) steps: Option<f64>,
+}
+
+impl SgcmCost {
+    /// Pairs of paths from a cell of a passage, at least and at most.
+    pub(crate) const PASSAGE_PATHS: [usize; 2] = CELL_PATHS;
 }
 
 impl SgcmOptions {

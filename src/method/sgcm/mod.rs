@@ -5,6 +5,7 @@
 mod angles_tests;
 mod cost;
 mod options;
+mod passages;
 mod phases;
 #[cfg(test)]
 mod phases_tests;

@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use super::Correction;
+use super::passages::SpreadAs;
 use super::phases::amplitudes;
 use super::replicates::Replicates;
 use super::slope_correction::{Corrected, solve_by};
@@ -69,14 +70,14 @@ impl SgcmSource {
             Outcome::SeveralClasses { classes, .. } => {
                 let mut reporter = self.reporter(point);
                 reporter.several_classes(&classes);
-                Ok((Solution::without_density(reporter.report), None))
+                self.without_density(point, reporter, cancellation)
             }
             Outcome::NoneInside { escape_per_step } => {
                 let mut reporter = self.reporter(point);
                 let rate = escape_rate(escape_per_step, point.transitions.map_step());
                 reporter.report.add(&ESCAPE_RATE, "", rate);
                 reporter.no_steady_state(Finding::LeavesAtOnce { rate });
-                Ok((Solution::without_density(reporter.report), None))
+                self.without_density(point, reporter, cancellation)
             }
         }
     }
@@ -121,7 +122,7 @@ impl SgcmSource {
         reporter.report.solver_error = info.error_estimate;
         let limit = self.options.escape_limit;
         let Some(share) = reporter.escaping_share(relaxation_time, limit) else {
-            return Ok((Solution::without_density(reporter.report), None));
+            return self.without_density(point, reporter, cancellation);
         };
         let of_axes = moments(self.problem.space(), &steady.mass)?;
         reporter.edge_mass(&steady.mass, &self.steps.closed_ends);
@@ -155,6 +156,15 @@ impl SgcmSource {
         let turning = velocities(&self.problem, system, masses, doubts);
         reporter.report.measures.extend(turning);
         reporter.replicates(replicates.len(), transitions.groups());
+        let spread = SpreadAs {
+            mass: &steady.mass,
+            replicates: &replicates,
+            is_linear: correction == Correction::Slope,
+        };
+        // A comparison solves the same samples with both corrections; passages have paths of their own.
+        if correction == self.correction() {
+            self.add_passages(&mut reporter.report, point, Some(&spread), cancellation)?;
+        }
         let solution = reporter.solution(
             densities,
             Some(&Cells {
@@ -167,6 +177,17 @@ impl SgcmSource {
             }),
         );
         Ok((solution, Some(steady.mass)))
+    }
+
+    /// What there is without a steady state: passages from a state.
+    fn without_density(
+        &self,
+        point: &SampledPoint,
+        mut reporter: Reporter<'_>,
+        cancellation: &Cancellation,
+    ) -> Result<SolvedMasses, MethodError> {
+        self.add_passages(&mut reporter.report, point, None, cancellation)?;
+        Ok((Solution::without_density(reporter.report), None))
     }
 
     /// What turns masses into what is watched at a value of the path.

@@ -57,6 +57,7 @@ impl SgcmSource {
         options: &SgcmOptions,
         cancellation: &Cancellation,
     ) -> Result<Self, MethodError> {
+        check_passages(problem)?;
         let problem = &on_even_turns(problem, FEWEST_PHASES)?;
         let steps = choose_steps(problem, options, cancellation)?;
         Ok(Self {
@@ -164,4 +165,18 @@ impl SgcmSource {
             transitions,
         })
     }
+}
+
+/// Nothing, if passages are between inequalities, of a system without a periodic force.
+fn check_passages(problem: &Problem) -> Result<(), MethodError> {
+    let family = problem.family();
+    let passages = &family.questions.passages;
+    if let Some(one) = passages.iter().find(|one| one.has_basins()) {
+        let passage = one.name.clone();
+        return Err(MethodError::Basin { passage });
+    }
+    if !passages.is_empty() && family.model().phase_axis().is_some() {
+        return Err(MethodError::ForcedQuestion);
+    }
+    Ok(())
 }

@@ -1,16 +1,16 @@
-//! `measures.csv`: numbers beside densities by generator and Monte Carlo, in full.
+//! `measures.csv`: numbers beside densities by all methods, in full.
 
 use serde_json::Value;
 
 use super::ComparedRun;
-use crate::compare::{ComparedValue, MeasurePair};
+use crate::compare::{ComparedMeasure, ComparedValue};
 use crate::run::RunError;
-use crate::run::columns::{Columns, number, word};
+use crate::run::columns::{Columns, number, optional, word};
 use crate::system::Family;
 
-/// Numbers by generator and Monte Carlo, a row a value and measure.
-pub(super) fn measures<'a>(family: &Family) -> Columns<'a, (f64, MeasurePair)> {
-    type Row = (f64, MeasurePair);
+/// Numbers by all methods, a row a value and measure.
+pub(super) fn measures<'a>(family: &Family) -> Columns<'a, (f64, ComparedMeasure)> {
+    type Row = (f64, ComparedMeasure);
     Columns(vec![
         number(family.parameter(), |(value, _): &Row| *value),
         word("measure", |(_, one): &Row| one.name.clone()),
@@ -19,11 +19,14 @@ pub(super) fn measures<'a>(family: &Family) -> Columns<'a, (f64, MeasurePair)> {
         number("monte_carlo", |(_, one): &Row| one.monte_carlo.0),
         number("monte_carlo_error", |(_, one): &Row| one.monte_carlo.1),
         number("errors_apart", |(_, one): &Row| one.apart()),
+        optional("sgcm", |(_, one): &Row| one.sgcm.map(|found| found.0)),
+        optional("sgcm_error", |(_, one): &Row| one.sgcm.map(|found| found.1)),
+        optional("sgcm_errors_apart", |(_, one): &Row| one.sgcm_apart()),
     ])
 }
 
 /// The numbers of all values.
-fn records(run: &ComparedRun<'_>) -> Vec<(f64, MeasurePair)> {
+fn records(run: &ComparedRun<'_>) -> Vec<(f64, ComparedMeasure)> {
     let values = run.comparison.values.iter();
     let at = |value: &ComparedValue| {
         let all = value.measures().into_iter();
@@ -32,7 +35,7 @@ fn records(run: &ComparedRun<'_>) -> Vec<(f64, MeasurePair)> {
     values.flat_map(at).collect()
 }
 
-/// `measures.csv`: numbers by generator and Monte Carlo, a row a value and measure.
+/// `measures.csv`: numbers by all methods, a row a value and measure.
 ///
 /// # Errors
 /// [`RunError::Table`].

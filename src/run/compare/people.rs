@@ -2,7 +2,7 @@
 
 use super::rows::factorisations;
 use super::{ComparedRun, partner};
-use crate::compare::{ComparedValue, Distance, MeasurePair, Method, Pair, Solved};
+use crate::compare::{ComparedMeasure, ComparedValue, Distance, Method, Pair, Solved};
 use crate::method::passage_columns;
 use crate::run::latex::escape;
 use crate::run::{format_number, format_with_error};
@@ -201,13 +201,15 @@ fn passages(run: &ComparedRun<'_>) -> CompareTable {
         "generator",
         "Monte Carlo",
         "errors apart",
+        "SGCM",
+        "its errors apart",
     ];
     let columns = passage_columns(run.family());
     let in_words = |(value, error)| {
         let (value, error) = format_with_error(value, error);
         format!("{value} ± {error}")
     };
-    let is_of_passage = |one: &MeasurePair| {
+    let is_of_passage = |one: &ComparedMeasure| {
         let mut columns = columns.iter();
         columns.any(|column| column.kind.name(&column.of) == one.name)
     };
@@ -220,11 +222,14 @@ fn passages(run: &ComparedRun<'_>) -> CompareTable {
                 in_words(one.generator),
                 in_words(one.monte_carlo),
                 format!("{:.1}", one.apart()),
+                one.sgcm.map_or_else(String::new, in_words),
+                one.sgcm_apart()
+                    .map_or_else(String::new, |apart| format!("{apart:.1}")),
             ]);
         }
     }
     CompareTable {
-        caption: "Times of first passage by generator and Monte Carlo".to_owned(),
+        caption: "Times of first passage by generator, Monte Carlo and SGCM".to_owned(),
         header: header.map(str::to_owned).to_vec(),
         rows,
     }

@@ -170,16 +170,18 @@ fn ascending(given: Option<&Vec<f64>>) -> Vec<f64> {
     all
 }
 
-/// The cell map of SGCM knows where a path is once a map step, and not when it has met a border.
+/// Transitions are counted on long trajectories, or follow from the generator: a path of a cell map does not know in
+/// which of two regions it was last.
 fn check_method(reader: &mut Reader<'_>, draft: &Draft) {
-    let Some(first) = draft.passages.first() else {
+    let has_transitions = |passage: &&PassageDraft| passage.transitions == Some(true);
+    let first = draft.passages.iter().find(has_transitions);
+    let Some(first) = first.filter(|_| draft.method.kind == MethodKind::Sgcm) else {
         return;
     };
-    if draft.method.kind != MethodKind::Sgcm {
-        return;
-    }
-    let title =
-        "times of first passage are worked out by `generator` and `monte-carlo`, not by `sgcm`";
+    let title = format!(
+        "transitions of passage `{}` are worked out by `generator` and `monte-carlo`, not by `sgcm`",
+        first.name
+    );
     let remedy = "set `method.kind = \"generator\"`, or `\"monte-carlo\"`";
     let diagnostic = Diagnostic::new(title).remedy(remedy);
     let place = reader.key_place(&["passage", &first.name]);

@@ -96,7 +96,11 @@ fn transitions_are_between_two_regions_and_reactive_fields_have_their_numbers() 
     let asked = passage("transitions = \"on\"");
     let sampled = parse(&asked, &["method.kind=monte-carlo"]).unwrap();
     assert!(sampled.family.questions.passages[0].transitions.is_some());
-    for (text, method) in [(&fields, "monte-carlo"), (&asked, "sgcm")] {
+    for (text, method) in [
+        (&fields, "monte-carlo"),
+        (&fields, "sgcm"),
+        (&asked, "sgcm"),
+    ] {
         let refused = refused(text, &[&format!("method.kind={method}")]);
         assert!(refused.contains("by `generator`"), "{refused}");
         assert!(refused.contains(&format!("not by `{method}`")), "{refused}");
