@@ -19,6 +19,9 @@ const CELLS_OF_A_MODE: usize = 4;
 /// Harmonics of an angle that says whether a process goes out or in, at least.
 const HARMONICS: usize = 32;
 
+/// Shares of an axis at which it is looked at whether one state moves another: a product of two may vanish at some.
+const LOOKED_AT: [f64; 3] = [0.21, 0.5, 0.83];
+
 /// Modes that coarser series leave out: one of each parity, and as many again, because what the last ones add to a
 /// region may vanish, as cos 8φ adds nothing to half a turn.
 const LEFT_OUT: [usize; 2] = [2, 4];
@@ -162,21 +165,35 @@ fn steering((system, space): (&dyn System, &CellSpace), region: &BoundQuantity) 
     let pairs = region.states().iter().enumerate();
     let across = pairs.filter(|&(axis, &depends)| depends && !system.is_noisy(axis));
     let across: Vec<usize> = across.map(|(axis, _)| axis).collect();
-    let middle: Vec<f64> = (space.axes().iter())
-        .map(|axis| axis.nodes()[axis.count() / 2])
-        .collect();
-    let drift = |axis: usize, x: f64| {
-        let mut state = middle.clone();
-        state[axis] = x;
-        system.drift_at(0.0, &state)
-    };
     let steers = |(axis, along): (usize, &Axis)| {
-        let own = drift(axis, middle[axis]);
-        let nodes = along.nodes().iter().filter(|_| along.is_modes());
-        let mut others = nodes.map(|&x| drift(axis, x));
-        others.any(|other| across.iter().any(|&one| other[one] != own[one]))
+        let moved = |state: &[f64]| {
+            let drift = |x: f64| {
+                let mut state = state.to_vec();
+                state[axis] = x;
+                system.drift_at(0.0, &state)
+            };
+            let own = system.drift_at(0.0, state);
+            let mut others = along.nodes().iter().map(|&x| drift(x));
+            others.any(|other| across.iter().any(|&one| other[one] != own[one]))
+        };
+        along.is_modes() && states_all_over(space).any(|state| moved(&state))
     };
     space.axes().iter().enumerate().map(steers).collect()
+}
+
+/// States at each of some places along every axis.
+fn states_all_over(space: &CellSpace) -> impl Iterator<Item = Vec<f64>> {
+    let count = LOOKED_AT.len();
+    (0..count.pow(space.dimension() as u32)).map(move |number| {
+        let mut rest = number;
+        let axes = space.axes().iter();
+        axes.map(|axis| {
+            let share = LOOKED_AT[rest % count];
+            rest /= count;
+            axis.nodes()[(share * axis.count() as f64) as usize]
+        })
+        .collect()
+    })
 }
 
 /// Values at the nodes of a space, times local volumes, as those at the nodes of the cells.

@@ -104,6 +104,26 @@ fn passages_under_coloured_noise_do_not_depend_on_how_the_noise_is_carried() {
 }
 
 #[test]
+fn noise_that_multiplies_the_state_is_seen_to_lead_over_a_border() {
+    // At x = 0 the noise moves nothing.
+    let text = WELL
+        .replace("x - x^3", "0.2 - 0.5 x")
+        .replace("x = \"s\"", "x = \"s x\"")
+        .replace("from = -2, to = 2", "from = 0, to = 8");
+    let text = format!(
+        "{}[passage]\nup = {{ start = {{ x = 0.5, noise = -0.4 }}, until = \"x > 2\" }}\n",
+        &text[..text.find("[passage]").unwrap()]
+    );
+    let by = |noise: &str| solved(&text, &format!("cells.noise={{{noise}}}"), Some(0.8)).1;
+    agree(
+        &by("modes=16"),
+        &by("count=90"),
+        &["up_mean", "up_sd", "up_rate"],
+        1.0,
+    );
+}
+
+#[test]
 fn a_rotor_starts_at_the_angle_that_is_given() {
     let names = ["fast_mean", "fast_sd", "fast_1_share"];
     let (_, found) = solved(ROTOR, "", Some(1.9));
