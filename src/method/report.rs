@@ -112,7 +112,9 @@ impl<'a> Reporter<'a> {
                 (
                     &DEVIATION,
                     one.moments.standard_deviation,
+                    // A variance that came out below zero tells no deviation.
                     one.errors
+                        .filter(|_| one.moments.standard_deviation > 0.0)
                         .map(|errors| errors.standard_deviation + beyond.standard_deviation),
                 ),
             ];

@@ -3,7 +3,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use pbif::continuation::Solution;
+use pbif::continuation::{Finding, Solution};
 
 use crate::common::sweeps::{measure, solved};
 
@@ -256,4 +256,74 @@ longest_passage = 50
     let exact = 1.0 / TAU;
     println!("{value} ± {error:.1e}, exactly {exact}");
     assert!((value - exact).abs() <= 4.0 * error && error <= 0.01 * exact);
+}
+
+#[test]
+fn errors_of_velocity_and_diffusion_by_few_harmonics_hold_and_are_no_bounds() {
+    let text = ROTOR
+        .replace(
+            "-0.74 v - k sin(th) + 0.3 cos(2 th)",
+            "0.5 - 0.6 v - k sin(th)",
+        )
+        .replace("sqrt(0.62)", "sqrt(0.6)")
+        .replace("from = 1.9", "from = 0.8")
+        .replace("to = 1.95", "to = 0.85")
+        .replace(
+            "from = -4.2, to = 4.7, count = 80",
+            "from = -5.4, to = 5.9, count = 140",
+        );
+    let text = &text[..text.find("[passage]").unwrap()];
+    let by = |harmonics: usize| solved(text, &format!("cells.th.modes={harmonics}"), Some(0.8)).1;
+    let many = by(20);
+    for (harmonics, widest) in [(4, 0.1), (6, 5e-4), (8, 2e-5)] {
+        let found = by(harmonics);
+        agree(&found, &many, &["velocity_th", "diffusion_th"], 1.0);
+        for name in ["velocity_th", "diffusion_th"] {
+            let (value, error) = measure(&found, name);
+            assert!(
+                error <= widest * value,
+                "{harmonics}: {name} {value} ± {error}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_deviation_of_a_variance_below_zero_is_not_known() {
+    let text = r#"
+[system.equations]
+phi = "w + 1.7 sin(phi) + 0.57 cos(phi)"
+[system.noise]
+phi = "sqrt(0.06)"
+[system.bounds]
+phi = "periodic"
+[sweep]
+parameter = "w"
+from = 1.03
+to = 1.13
+points = 2
+[cells]
+phi = { modes = 5 }
+[watch]
+c = "cos(phi)"
+"#;
+    let (_, found) = solved(text, "", Some(1.03));
+    let deviation = found
+        .report
+        .measures
+        .iter()
+        .find(|one| one.name == "sd_c")
+        .unwrap();
+    // Five harmonics cannot carry this density: what they give is below zero where it should be next to nothing.
+    assert!(
+        deviation.value > 0.0 || deviation.error.is_none(),
+        "{deviation:?}"
+    );
+    assert!(
+        found
+            .report
+            .findings
+            .iter()
+            .any(|one| matches!(one, Finding::FewModes { .. }))
+    );
 }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::at_phases::{OverPeriod, moments_at_phases};
 use super::coarse::{COARSE, Coarseness, rough_relaxation};
 use super::forcing::{Solved, amplitude};
+use super::last_modes::LastModes;
 use super::relaxation::Relaxation;
 use super::rotation::{Steady, rotation};
 use super::second::{Second, SecondSolve};
@@ -175,6 +176,11 @@ impl GeneratorSession {
         let Some(second) = &solved.second else {
             return Ok(Vec::new());
         };
+        let rates = second;
+        let mut asked = vec![false; problem.space().dimension()];
+        for (axis, _) in problem.family().angles() {
+            asked[axis] = true;
+        }
         let mut found = Vec::new();
         let mut both = None;
         for angle in problem.family().angles() {
@@ -196,7 +202,12 @@ impl GeneratorSession {
                 change,
                 shifts,
             };
-            found.extend(rotation(&steady, angle, &mut self.solver)?);
+            let harmonics = LastModes {
+                space: problem.space(),
+                asked: &asked,
+                scheme: rates,
+            };
+            found.extend(rotation(&steady, angle, (&mut self.solver, &harmonics))?);
         }
         Ok(found)
     }

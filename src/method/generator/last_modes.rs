@@ -13,10 +13,11 @@ use super::session::{GeneratorSession, PointSolve};
 use super::truncation::OF_AN_ANSWER;
 use super::unknowns::moments_of;
 use crate::density::{EstimatedDensity, EstimatedMoments, Moments};
-use crate::generator::{cell_masses, summed_to_walls};
+use crate::generator::{LineRates, cell_masses, summed_to_walls};
 use crate::method::MethodError;
 use crate::method::watched::differences;
 use crate::space::{Axis, CellSpace, Series};
+use crate::stationary::generator::RateSolver;
 
 /// Times what the last modes change of a mean: those that are not there may do as much.
 const SAFETY: f64 = 2.0;
@@ -86,16 +87,43 @@ impl GeneratorSession {
             return Ok(None);
         };
         let unknowns = &solved.steady.mass;
-        let last = differences(&of_first_modes(&space, asked, unknowns), unknowns);
-        // The schemes differ along the cells alone, in what is small against the masses as the last modes are.
-        let fed = of_first_modes(&space, asked, &second.product(&last));
-        let fed: Vec<f64> = fed.iter().map(|rate| -rate).collect();
-        let answer = self.solver.response(&fed, unknowns, None, OF_AN_ANSWER)?;
-        let fewer = of_first_modes(&space, asked, &differences(&last, &answer));
-        let fewer = differences(&last, &fewer);
+        let modes = LastModes {
+            space: &space,
+            asked,
+            scheme: second,
+        };
+        let change = modes.change(&mut self.solver, unknowns, unknowns)?;
         Ok(Some(
-            unknowns.iter().zip(&fewer).map(|(u, du)| u + du).collect(),
+            unknowns.iter().zip(change).map(|(u, du)| u + du).collect(),
         ))
+    }
+}
+
+/// The last modes of some axes.
+pub(super) struct LastModes<'a> {
+    pub(super) space: &'a CellSpace,
+    /// A flag an axis.
+    pub(super) asked: &'a [bool],
+    /// The rates. Schemes differ along the cells alone, in what is small against the masses as the last modes are.
+    pub(super) scheme: &'a LineRates,
+}
+
+impl LastModes<'_> {
+    /// By how much `answering`, which answers to a source as the steady state `unknowns` does to none, would differ
+    /// without these modes.
+    pub(super) fn change(
+        &self,
+        solver: &mut RateSolver,
+        unknowns: &[f64],
+        answering: &[f64],
+    ) -> Result<Vec<f64>, MethodError> {
+        let of_first = |masses: &[f64]| of_first_modes(self.space, self.asked, masses);
+        let last = differences(&of_first(answering), answering);
+        let fed = of_first(&self.scheme.product(&last));
+        let fed: Vec<f64> = fed.iter().map(|rate| -rate).collect();
+        let answer = solver.response(&fed, unknowns, None, OF_AN_ANSWER)?;
+        let fewer = of_first(&differences(&last, &answer));
+        Ok(differences(&last, &fewer))
     }
 }
 

@@ -6,13 +6,14 @@
 //! D = ∫ (b²/2) p + ∫ a r (G. A. Pavliotis and A. M. Stuart, *Multiscale Methods*, 2008, ch. 13). Along the
 //! harmonics of the angle all integrals are sums over nodes.
 //!
-//! The error of both is what the second scheme changes (to first order, with the factors at hand), the last two
-//! harmonics where they were left out, what the solver leaves, and what the ends of other ranges do. That is as much as
-//! the mean along such an axis is shifted by, times the slope of a along the axis to the end; for the diffusion times
-//! r/p at the end too.
+//! The error of both is what the second scheme changes (to first order, with the factors at hand), twice what the last
+//! harmonics do (a fifth of them, as of means), what the solver leaves, and what the ends of other ranges do. That is as
+//! much as the mean along such an axis is shifted by, times the slope of a along the axis to the end; for the diffusion
+//! times r/p at the end too.
 
 use sprs::CsMat;
 
+use super::last_modes::LastModes;
 use crate::continuation::Measure;
 use crate::continuation::measure::{TURN_DIFFUSION, VELOCITY};
 use crate::generator::Generator;
@@ -26,7 +27,8 @@ use crate::system::{LANES, System};
 const ACCURACY: f64 = 1e-9;
 const ROUGH: f64 = 1e-2;
 
-/// Times what the second scheme changes: both may err alike.
+/// Times what the second scheme changes, which may err alike, and what the last harmonics do: those that are not there
+/// may do as much.
 const SAFETY: f64 = 2.0;
 
 /// A steady state by a solver that holds its factors.
@@ -52,7 +54,7 @@ pub(super) struct Steady<'a> {
 pub(super) fn rotation(
     steady: &Steady<'_>,
     (axis, name): (usize, &str),
-    solver: &mut RateSolver,
+    (solver, harmonics): (&mut RateSolver, &LastModes<'_>),
 ) -> Result<[Measure; 2], MethodError> {
     let along = Coefficients::new(steady, axis);
     // Schemes differ along cells alone: where there are none, what they are said to differ by is what a solve with a
@@ -65,24 +67,36 @@ pub(super) fn rotation(
     let source = along.source(u, velocity);
     let first = solver.response(&source, u, None, ACCURACY)?;
     let diffusion = sum(&along.noise, u) + sum(&along.drift, &first);
-    // What the second scheme changes of the right side and of the matrix.
-    let mut answer = along.source(change, velocity);
-    for (slot, u) in answer.iter_mut().zip(u) {
-        *slot -= turned * u;
-    }
+    // What other unknowns change of the right side.
+    let of_source = |change: &[f64], turned: f64| {
+        let mut source = along.source(change, velocity);
+        for (slot, u) in source.iter_mut().zip(u) {
+            *slot -= turned * u;
+        }
+        source
+    };
+    // And what the second scheme changes of the matrix.
+    let mut answer = of_source(change, turned);
     add_difference(&steady.second.matrix, steady.first, &first, &mut answer);
     let moved = match answer.iter().any(|value| *value != 0.0) {
         true => solver.response(&answer, u, None, ROUGH)?,
         false => vec![0.0; u.len()],
     };
     let spread = sum(&along.noise, change) + sum(&along.drift, &moved);
+    let fewer = harmonics.change(solver, u, u)?;
+    let turned_by_fewer = sum(&along.drift, &fewer);
+    let answer = of_source(&fewer, turned_by_fewer);
+    let of_right_side = solver.response(&answer, u, None, ROUGH)?;
+    let of_harmonics = harmonics.change(solver, u, &first)?;
+    let spread_by_fewer = sum(&along.noise, &fewer)
+        + sum(&along.drift, &of_right_side)
+        + sum(&along.drift, &of_harmonics);
     let fastest = along.fastest(velocity);
     let left = steady.error + f64::EPSILON * (u.len() as f64).sqrt();
     let beyond = along.beyond((u, &first), velocity, steady.shifts);
     let errors = [
-        SAFETY * turned.abs() + along.tail(u, velocity) + fastest * left + beyond[0],
-        SAFETY * spread.abs()
-            + along.tail(&first, velocity)
+        SAFETY * (turned.abs() + turned_by_fewer.abs()) + fastest * left + beyond[0],
+        SAFETY * (spread.abs() + spread_by_fewer.abs())
             + fastest * size(&first) * (ACCURACY + left)
             + beyond[1],
     ];
@@ -205,41 +219,6 @@ impl<'a> Coefficients<'a> {
         }
         added
     }
-
-    /// What the last two harmonics add to an average of the drift, at most; those that are left out add less.
-    fn tail(&self, values: &[f64], velocity: f64) -> f64 {
-        let (axis, count) = (self.axis(), self.axis().count());
-        let shape = self.space.shape();
-        let stride: usize = shape[self.axis + 1..].iter().product();
-        let top = axis.mode_number();
-        let mut total = 0.0;
-        for block in (0..values.len()).step_by(stride * count) {
-            for start in block..block + stride {
-                let cells = (0..count).map(|k| start + k * stride);
-                let fastest = cells
-                    .clone()
-                    .map(|cell| (self.drift[cell] - velocity).abs());
-                let fastest = fastest.fold(0.0, f64::max);
-                let line: Vec<f64> = cells.map(|cell| values[cell]).collect();
-                let last = [top, top.saturating_sub(1).max(1)];
-                let size: f64 = last.iter().map(|&k| harmonic(&line, k)).sum();
-                total += 2.0 * fastest * size;
-            }
-        }
-        total
-    }
-}
-
-/// Magnitude of Σ v_j e^{-2πi k j/N}.
-fn harmonic(values: &[f64], k: usize) -> f64 {
-    let count = values.len() as f64;
-    let (mut cosine, mut sine) = (0.0, 0.0);
-    for (j, value) in values.iter().enumerate() {
-        let angle = std::f64::consts::TAU * ((k * j) % values.len()) as f64 / count;
-        cosine += value * angle.cos();
-        sine += value * angle.sin();
-    }
-    f64::hypot(cosine, sine)
 }
 
 /// Adds (other - one) · vector.
