@@ -7,15 +7,16 @@
 //! harmonics of the angle all integrals are sums over nodes.
 //!
 //! The error of both is what the second scheme changes (to first order, with the factors at hand), twice what the last
-//! harmonics do (a fifth of them, as of means), what the solver leaves, and what the ends of other ranges do. That is as
-//! much as the mean along such an axis is shifted by, times the slope of a along the axis to the end; for the diffusion
-//! times r/p at the end too.
+//! harmonics do (a fifth of them, as of means) or, where that is not small, a bound of what two of them add, what the
+//! solver leaves, and what the ends of other ranges do. The last is as much as the mean along such an axis is shifted
+//! by, times the slope of a along the axis to the end; for the diffusion times r/p at the end too.
 
 use sprs::CsMat;
 
 use super::last_modes::LastModes;
 use crate::continuation::Measure;
 use crate::continuation::measure::{TURN_DIFFUSION, VELOCITY};
+use crate::density::Roughness;
 use crate::generator::Generator;
 use crate::method::MethodError;
 use crate::method::lattice::for_all_nodes;
@@ -30,6 +31,9 @@ const ROUGH: f64 = 1e-2;
 /// Times what the second scheme changes, which may err alike, and what the last harmonics do: those that are not there
 /// may do as much.
 const SAFETY: f64 = 2.0;
+
+/// Share of a number up to which what the last harmonics change of it is known to first order.
+const SMALL: f64 = 0.01;
 
 /// A steady state by a solver that holds its factors.
 pub(super) struct Steady<'a> {
@@ -83,20 +87,48 @@ pub(super) fn rotation(
         false => vec![0.0; u.len()],
     };
     let spread = sum(&along.noise, change) + sum(&along.drift, &moved);
+    // Sums of changes may vanish by chance: what those of neighbouring layers of cells do alone is added.
+    let faster: Vec<f64> = along.drift.iter().map(|a| a - velocity).collect();
+    let rough = |differences: &[f64], values: &[f64]| {
+        let (space, planes) = (steady.space, &[][..]);
+        let roughness = Roughness {
+            space,
+            weights: u,
+            differences,
+            planes,
+        };
+        roughness.of(values)
+    };
+    let turned_by_layers = rough(change, &faster);
+    let spread_by_layers = rough(change, &along.noise) + rough(&moved, &faster);
     let fewer = harmonics.change(solver, u, u)?;
     let turned_by_fewer = sum(&along.drift, &fewer);
     let answer = of_source(&fewer, turned_by_fewer);
     let of_right_side = solver.response(&answer, u, None, ROUGH)?;
-    let of_harmonics = harmonics.change(solver, u, &first)?;
+    let of_matrix = harmonics.change(solver, u, &first)?;
     let spread_by_fewer = sum(&along.noise, &fewer)
         + sum(&along.drift, &of_right_side)
-        + sum(&along.drift, &of_harmonics);
+        + sum(&along.drift, &of_matrix);
+    let speeds = along.drift.iter().zip(u).map(|(a, u)| (a * u).abs());
+    let of_harmonics = [
+        (turned_by_fewer, speeds.sum(), u),
+        (spread_by_fewer, diffusion, &first),
+    ];
+    // To first order a change is known where it is small.
+    let of_harmonics = of_harmonics.map(|(change, size, answer): (f64, f64, &[f64])| {
+        match change.abs() <= SMALL * size.abs() {
+            true => SAFETY * change.abs(),
+            false => (SAFETY * change.abs()).max(along.tail(answer, velocity)),
+        }
+    });
     let fastest = along.fastest(velocity);
     let left = steady.error + f64::EPSILON * (u.len() as f64).sqrt();
     let beyond = along.beyond((u, &first), velocity, steady.shifts);
     let errors = [
-        SAFETY * (turned.abs() + turned_by_fewer.abs()) + fastest * left + beyond[0],
-        SAFETY * (spread.abs() + spread_by_fewer.abs())
+        SAFETY * turned.abs() + of_harmonics[0] + turned_by_layers + fastest * left + beyond[0],
+        SAFETY * spread.abs()
+            + of_harmonics[1]
+            + spread_by_layers
             + fastest * size(&first) * (ACCURACY + left)
             + beyond[1],
     ];
@@ -219,6 +251,41 @@ impl<'a> Coefficients<'a> {
         }
         added
     }
+
+    /// What the last two harmonics add to an average of the drift, at most; those that are left out add less.
+    fn tail(&self, values: &[f64], velocity: f64) -> f64 {
+        let (axis, count) = (self.axis(), self.axis().count());
+        let shape = self.space.shape();
+        let stride: usize = shape[self.axis + 1..].iter().product();
+        let top = axis.mode_number();
+        let mut total = 0.0;
+        for block in (0..values.len()).step_by(stride * count) {
+            for start in block..block + stride {
+                let cells = (0..count).map(|k| start + k * stride);
+                let fastest = cells
+                    .clone()
+                    .map(|cell| (self.drift[cell] - velocity).abs());
+                let fastest = fastest.fold(0.0, f64::max);
+                let line: Vec<f64> = cells.map(|cell| values[cell]).collect();
+                let last = [top, top.saturating_sub(1).max(1)];
+                let size: f64 = last.iter().map(|&k| harmonic(&line, k)).sum();
+                total += 2.0 * fastest * size;
+            }
+        }
+        total
+    }
+}
+
+/// Magnitude of Σ v_j e^{-2πi k j/N}.
+fn harmonic(values: &[f64], k: usize) -> f64 {
+    let count = values.len() as f64;
+    let (mut cosine, mut sine) = (0.0, 0.0);
+    for (j, value) in values.iter().enumerate() {
+        let angle = std::f64::consts::TAU * ((k * j) % values.len()) as f64 / count;
+        cosine += value * angle.cos();
+        sine += value * angle.sin();
+    }
+    f64::hypot(cosine, sine)
 }
 
 /// Adds (other - one) · vector.
