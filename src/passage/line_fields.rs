@@ -7,8 +7,8 @@
 //! is their conductance times what q rises by.
 
 use super::PassageError;
+use super::bordered::Bordered;
 use super::field::{FieldTarget, PassageField};
-use super::on_line::{Bordered, Inside};
 use crate::generator::{ChainGrid, Reach};
 use crate::space::CellSpace;
 use crate::system::BoundQuantity;
@@ -25,19 +25,13 @@ pub(crate) fn field_on_line(
     let mut regions = vec![&target.until];
     regions.extend(&target.exits);
     let at_centres = AtCentres::new(reach, space, &regions)?;
-    let until = at_centres.bordered.inside(&target.until);
-    if until.0.iter().all(|inside| !inside) {
-        return Some(Err(PassageError::Nowhere));
-    }
-    if until.0.iter().all(|inside| *inside) {
-        return Some(Err(PassageError::Everywhere));
-    }
+    let until = match at_centres.bordered.target(&target.until) {
+        Ok(until) => until,
+        Err(error) => return Some(Err(error)),
+    };
     let ends = until.places();
     let part = target.part.and_then(|part| target.exits.get(part));
-    let part = part.map(|part| {
-        let inside = at_centres.bordered.inside(part).0.into_iter().zip(&until.0);
-        Inside(inside.map(|(part, until)| part && *until).collect()).places()
-    });
+    let part = part.map(|part| at_centres.bordered.places_of_part(part, &until));
     let most = part.as_ref().map_or(f64::INFINITY, |_| 1.0);
     let found = at_centres.extrapolated(|grid| {
         let ends = grid.sampled(&ends);

@@ -49,7 +49,7 @@
 //! | its density, from one grid to another | `lasting.rs` |
 //! | probabilities at times, and quantiles | `survival.rs` |
 //! | numbers with errors | `timed.rs` |
-//! | the same on one axis, from a chain | `on_line.rs` |
+//! | the same on one axis, from a chain | `on_line.rs`, `bordered.rs` |
 //! | places and rates for a start beside a border there | `near_border.rs` |
 //! | what is handed from value to value | `memory.rs` |
 //! | numbers as fields over the start | `field.rs` |
@@ -64,6 +64,7 @@
 //! | where the level of a region changes its sign | `crossing.rs` |
 //! | parts of a region that are narrower than a cell | `dips.rs`, `pocket.rs` |
 
+mod bordered;
 mod cells;
 mod crossing;
 mod current;

@@ -4,8 +4,7 @@
 const MOST_BITS: u32 = 8;
 
 /// Sorts samples by end cell, those of a cell in the order in which they came. A sample is its end cell, `largest` at
-/// most, above 32 bits that are left alone. It is a radix sort: one pass for each group
-/// of bits of a cell's number.
+/// most, above 32 bits that are left alone. It is a radix sort: one pass for each group of bits of a cell's number.
 pub(super) fn sort_by_cell(samples: &mut Vec<u64>, room: &mut Vec<u64>, largest: usize) {
     let bits = usize::BITS - largest.leading_zeros();
     let passes = bits.div_ceil(MOST_BITS);

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 /// The Hessenberg matrix, made triangular by rotations as it grows.
-pub(super) struct Triangle {
+pub(crate) struct Triangle {
     columns: Vec<Vec<f64>>,
     rotations: Vec<(f64, f64)>,
     right: Vec<f64>,
@@ -11,7 +11,7 @@ pub(super) struct Triangle {
 
 impl Triangle {
     /// An empty one, for a start of a size.
-    pub(super) fn new(size: f64) -> Self {
+    pub(crate) fn new(size: f64) -> Self {
         Self {
             columns: Vec::new(),
             rotations: Vec::new(),
@@ -20,7 +20,7 @@ impl Triangle {
     }
 
     /// Takes a column with its entry below the diagonal; gives the norm of the residual.
-    pub(super) fn push(&mut self, mut column: Vec<f64>, below: f64) -> f64 {
+    pub(crate) fn push(&mut self, mut column: Vec<f64>, below: f64) -> f64 {
         for (index, &(cosine, sine)) in self.rotations.iter().enumerate() {
             let (a, b) = (column[index], column[index + 1]);
             column[index] = cosine * a + sine * b;
@@ -43,7 +43,7 @@ impl Triangle {
     }
 
     /// Weights of the basis vectors, and the smallest singular value.
-    pub(super) fn solve(&self) -> (Vec<f64>, f64) {
+    pub(crate) fn solve(&self) -> (Vec<f64>, f64) {
         let n = self.columns.len();
         if n == 0 {
             return (Vec::new(), 1.0);

@@ -38,6 +38,7 @@
 
 pub mod generator;
 mod hessenberg;
+pub(crate) use hessenberg::Triangle;
 mod transition_matrix;
 
 pub(crate) use transition_matrix::{Changed, MOST_APPLICATIONS, without_groups};

@@ -30,6 +30,7 @@
 
 mod binding;
 mod bistable;
+mod bound_quantity;
 mod coloured;
 mod compiled_steps;
 pub mod contract;
@@ -61,6 +62,7 @@ mod typed;
 
 pub use crate::formula::{LANES, Lanes};
 pub use binding::{ParameterValues, SystemError};
+pub use bound_quantity::BoundQuantity;
 pub use coloured::{ColouredNoiseError, NoiseKind};
 pub use compiled_steps::{CompiledSteps, StepScheme};
 pub use description::{AxisDescription, ParameterDescription, ParameterRange};
@@ -79,7 +81,7 @@ pub use passage::{
 };
 pub use path::Path;
 pub(crate) use quantity::AtPhase;
-pub use quantity::{BoundQuantity, Quantity, QuantityError, QuantityFault, quantities};
+pub use quantity::{Quantity, QuantityError, QuantityFault, quantities};
 pub use questions::{ExponentMethod, Questions};
 pub(crate) use region::Basin;
 pub use region::{Region, RegionError, RegionFault, regions};

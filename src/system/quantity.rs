@@ -4,11 +4,12 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::{LANES, Lanes, Model, PHASE_AXIS, SystemError, TypedEquations};
+use super::bound_quantity::{BoundQuantity, Turn, turns};
+use super::{Model, PHASE_AXIS, SystemError};
 use crate::formula::graph::{Expression, Graph, Symbol};
 use crate::formula::language::FormulaError;
 use crate::formula::scope::{DefinitionError, DefinitionFault, Scope, SymbolError, Symbols};
-use crate::formula::tape::{Program, Tape};
+use crate::formula::tape::Program;
 
 /// A function of the state, and perhaps of parameters.
 #[derive(Debug, Clone)]
@@ -22,24 +23,6 @@ pub struct Quantity {
     at_phase: Option<AtPhase>,
     /// The angles that it depends on.
     turns: Vec<Turn>,
-}
-
-/// An angle: its axis, and the ends of its range, which are one place.
-#[derive(Debug, Clone, Copy)]
-struct Turn {
-    axis: usize,
-    ends: (f64, f64),
-}
-
-impl Turn {
-    /// The places in the range that these angles are; those in the range, its ends among them, stay as they are.
-    fn in_range(&self, angles: &Lanes) -> Lanes {
-        let (from, to) = self.ends;
-        angles.map(|angle| match from <= angle && angle <= to {
-            true => angle,
-            false => from + (angle - from).rem_euclid(to - from),
-        })
-    }
 }
 
 /// An axis of the state at a phase of the forcing, in place of the whole period.
@@ -65,14 +48,6 @@ impl AtPhase {
             None => format!("{}", self.phase),
         }
     }
-}
-
-/// A quantity with values of all parameters.
-#[derive(Debug, Clone)]
-pub struct BoundQuantity {
-    tape: Tape,
-    states: Vec<bool>,
-    turns: Vec<Turn>,
 }
 
 /// What is wrong with a quantity.
@@ -354,42 +329,6 @@ impl Quantity {
             states: self.states.clone(),
             turns: self.turns.clone(),
         })
-    }
-}
-
-/// The angles of a model among some of its states.
-fn turns(model: &Model, states: &[bool]) -> Vec<Turn> {
-    let known = model.formulas().into_iter().flat_map(TypedEquations::turns);
-    let turns = known.filter(|&(axis, _)| states.get(axis).copied().unwrap_or(false));
-    turns.map(|(axis, ends)| Turn { axis, ends }).collect()
-}
-
-impl BoundQuantity {
-    /// Whether it depends on each coordinate of the state.
-    pub(crate) fn states(&self) -> &[bool] {
-        &self.states
-    }
-
-    /// Values at a batch of states, `states[axis][lane]`; NaN or infinite where the formula has no value. An angle that
-    /// has gone beyond its range is taken back by whole turns.
-    pub fn values(&self, states: &[Lanes]) -> Lanes {
-        let mut values = [[f64::NAN; LANES]];
-        if self.turns.is_empty() {
-            self.tape.run(0.0, states, &mut values);
-            return values[0];
-        }
-        let mut within = states.to_vec();
-        for turn in &self.turns {
-            within[turn.axis] = turn.in_range(&states[turn.axis]);
-        }
-        self.tape.run(0.0, &within, &mut values);
-        values[0]
-    }
-
-    /// The value at one state.
-    pub fn at(&self, state: &[f64]) -> f64 {
-        let states: Vec<Lanes> = state.iter().map(|&value| [value; LANES]).collect();
-        self.values(&states)[0]
     }
 }
 

@@ -79,6 +79,15 @@ fn agree(one: &Solution<'_>, other: &Solution<'_>, names: &[&str], errors: f64) 
     }
 }
 
+/// The rotor with a torque that turns it, and without a passage.
+fn driven_rotor() -> String {
+    let force = "-0.74 v - k sin(th) + 0.3 cos(2 th)";
+    let text = ROTOR.replace(force, "0.5 - 0.6 v - k sin(th)");
+    let text = text.replace("sqrt(0.62)", "sqrt(0.6)");
+    let text = text.replace("from = 1.9\nto = 1.95", "from = 0.8\nto = 0.85");
+    text[..text.find("[passage]").unwrap()].to_owned()
+}
+
 #[test]
 fn passages_under_coloured_noise_do_not_depend_on_how_the_noise_is_carried() {
     let names = [
@@ -184,21 +193,13 @@ fn means_under_coloured_noise_have_a_part_for_its_modes() {
 
 #[test]
 fn the_ends_of_the_range_of_a_velocity_are_in_the_errors_of_how_an_angle_turns() {
-    let text = ROTOR
-        .replace(
-            "-0.74 v - k sin(th) + 0.3 cos(2 th)",
-            "0.5 - 0.6 v - k sin(th)",
-        )
-        .replace("sqrt(0.62)", "sqrt(0.6)")
-        .replace("from = 1.9", "from = 0.8")
-        .replace("to = 1.95", "to = 0.85");
-    let text = &text[..text.find("[passage]").unwrap()];
+    let text = driven_rotor();
     // Deviations of the velocity from its mean to the ends, and the cells there.
     let by = |deviations: f64, cells: usize| {
         let half = deviations / 2.0_f64.sqrt();
         let (from, to) = (0.25 - half, 0.25 + half);
         let words = format!("cells.v={{from={from},to={to},count={cells}}}");
-        solved(text, &words, Some(0.8)).1
+        solved(&text, &words, Some(0.8)).1
     };
     let whole = by(8.0, 250);
     for deviations in [4.0, 4.5, 5.0, 5.5] {
@@ -260,20 +261,9 @@ longest_passage = 50
 
 #[test]
 fn errors_of_velocity_and_diffusion_by_few_harmonics_hold_and_are_no_bounds() {
-    let text = ROTOR
-        .replace(
-            "-0.74 v - k sin(th) + 0.3 cos(2 th)",
-            "0.5 - 0.6 v - k sin(th)",
-        )
-        .replace("sqrt(0.62)", "sqrt(0.6)")
-        .replace("from = 1.9", "from = 0.8")
-        .replace("to = 1.95", "to = 0.85")
-        .replace(
-            "from = -4.2, to = 4.7, count = 80",
-            "from = -5.4, to = 5.9, count = 140",
-        );
-    let text = &text[..text.find("[passage]").unwrap()];
-    let by = |harmonics: usize| solved(text, &format!("cells.th.modes={harmonics}"), Some(0.8)).1;
+    let cells = "from = -4.2, to = 4.7, count = 80";
+    let text = driven_rotor().replace(cells, "from = -5.4, to = 5.9, count = 140");
+    let by = |harmonics: usize| solved(&text, &format!("cells.th.modes={harmonics}"), Some(0.8)).1;
     let many = by(20);
     for (harmonics, widest) in [(4, 0.3), (6, 5e-4), (8, 2e-5)] {
         let found = by(harmonics);

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::at_phases::{OverPeriod, moments_at_phases};
 use super::coarse::{COARSE, Coarseness, rough_relaxation};
 use super::forcing::{Solved, amplitude};
-use super::last_modes::LastModes;
+use super::last_modes::{LastModes, angles};
 use super::relaxation::Relaxation;
 use super::rotation::{Steady, rotation};
 use super::second::{Second, SecondSolve};
@@ -177,10 +177,7 @@ impl GeneratorSession {
             return Ok(Vec::new());
         };
         let rates = second;
-        let mut asked = vec![false; problem.space().dimension()];
-        for (axis, _) in problem.family().angles() {
-            asked[axis] = true;
-        }
+        let asked = angles(problem);
         let mut found = Vec::new();
         let mut both = None;
         for angle in problem.family().angles() {

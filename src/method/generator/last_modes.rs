@@ -14,8 +14,8 @@ use super::truncation::OF_AN_ANSWER;
 use super::unknowns::moments_of;
 use crate::density::{EstimatedDensity, EstimatedMoments, Moments};
 use crate::generator::{LineRates, cell_masses, summed_to_walls};
-use crate::method::MethodError;
 use crate::method::watched::differences;
+use crate::method::{MethodError, Problem};
 use crate::space::{Axis, CellSpace, Series};
 use crate::stationary::generator::RateSolver;
 
@@ -56,10 +56,7 @@ impl GeneratorSession {
     ) -> Result<Vec<EstimatedMoments>, MethodError> {
         let problem = self.source.problem.clone();
         let space = problem.space();
-        let mut asked = vec![false; space.dimension()];
-        for (axis, _) in problem.family().angles() {
-            asked[axis] = true;
-        }
+        let asked = angles(&problem);
         let harmonics = self.by_fewer_modes(solved, &asked)?;
         let system = solved.system.as_ref();
         let mut moments = moments;
@@ -97,6 +94,15 @@ impl GeneratorSession {
             unknowns.iter().zip(change).map(|(u, du)| u + du).collect(),
         ))
     }
+}
+
+/// Which axes are angles, a flag an axis.
+pub(super) fn angles(problem: &Problem) -> Vec<bool> {
+    let mut flags = vec![false; problem.space().dimension()];
+    for (axis, _) in problem.family().angles() {
+        flags[axis] = true;
+    }
+    flags
 }
 
 /// The last modes of some axes.

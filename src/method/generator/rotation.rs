@@ -71,16 +71,8 @@ pub(super) fn rotation(
     let source = along.source(u, velocity);
     let first = solver.response(&source, u, None, ACCURACY)?;
     let diffusion = sum(&along.noise, u) + sum(&along.drift, &first);
-    // What other unknowns change of the right side.
-    let of_source = |change: &[f64], turned: f64| {
-        let mut source = along.source(change, velocity);
-        for (slot, u) in source.iter_mut().zip(u) {
-            *slot -= turned * u;
-        }
-        source
-    };
-    // And what the second scheme changes of the matrix.
-    let mut answer = of_source(change, turned);
+    // What the second scheme changes of the right side and of the matrix.
+    let mut answer = along.change_of_source((u, change), [velocity, turned]);
     add_difference(&steady.second.matrix, steady.first, &first, &mut answer);
     let moved = match answer.iter().any(|value| *value != 0.0) {
         true => solver.response(&answer, u, None, ROUGH)?,
@@ -101,26 +93,12 @@ pub(super) fn rotation(
     };
     let turned_by_layers = rough(change, &faster);
     let spread_by_layers = rough(change, &along.noise) + rough(&moved, &faster);
-    let fewer = harmonics.change(solver, u, u)?;
-    let turned_by_fewer = sum(&along.drift, &fewer);
-    let answer = of_source(&fewer, turned_by_fewer);
-    let of_right_side = solver.response(&answer, u, None, ROUGH)?;
-    let of_matrix = harmonics.change(solver, u, &first)?;
-    let spread_by_fewer = sum(&along.noise, &fewer)
-        + sum(&along.drift, &of_right_side)
-        + sum(&along.drift, &of_matrix);
-    let speeds = along.drift.iter().zip(u).map(|(a, u)| (a * u).abs());
-    let of_harmonics = [
-        (turned_by_fewer, speeds.sum(), u),
-        (spread_by_fewer, diffusion, &first),
-    ];
-    // To first order a change is known where it is small.
-    let of_harmonics = of_harmonics.map(|(change, size, answer): (f64, f64, &[f64])| {
-        match change.abs() <= SMALL * size.abs() {
-            true => SAFETY * change.abs(),
-            false => (SAFETY * change.abs()).max(along.tail(answer, velocity)),
-        }
-    });
+    let of_harmonics = by_harmonics(
+        &along,
+        (u, &first),
+        [velocity, diffusion],
+        (solver, harmonics),
+    )?;
     let fastest = along.fastest(velocity);
     let left = steady.error + f64::EPSILON * (u.len() as f64).sqrt();
     let beyond = along.beyond((u, &first), velocity, steady.shifts);
@@ -140,6 +118,37 @@ pub(super) fn rotation(
         measure(velocity, errors[0], VELOCITY),
         measure(diffusion, errors[1], TURN_DIFFUSION),
     ])
+}
+
+/// What the last harmonics change of velocity and diffusion, as parts of their errors.
+fn by_harmonics(
+    along: &Coefficients<'_>,
+    (u, first): (&[f64], &[f64]),
+    [velocity, diffusion]: [f64; 2],
+    (solver, harmonics): (&mut RateSolver, &LastModes<'_>),
+) -> Result<[f64; 2], MethodError> {
+    let fewer = harmonics.change(solver, u, u)?;
+    let turned_by_fewer = sum(&along.drift, &fewer);
+    let answer = along.change_of_source((u, &fewer), [velocity, turned_by_fewer]);
+    let of_right_side = solver.response(&answer, u, None, ROUGH)?;
+    let of_matrix = harmonics.change(solver, u, first)?;
+    let spread_by_fewer = sum(&along.noise, &fewer)
+        + sum(&along.drift, &of_right_side)
+        + sum(&along.drift, &of_matrix);
+    let speeds = along.drift.iter().zip(u).map(|(a, u)| (a * u).abs());
+    let of_harmonics = [
+        (turned_by_fewer, speeds.sum(), u),
+        (spread_by_fewer, diffusion, first),
+    ];
+    // To first order a change is known where it is small.
+    Ok(
+        of_harmonics.map(|(change, size, answer): (f64, f64, &[f64])| {
+            match change.abs() <= SMALL * size.abs() {
+                true => SAFETY * change.abs(),
+                false => (SAFETY * change.abs()).max(along.tail(answer, velocity)),
+            }
+        }),
+    )
 }
 
 /// Drift and noise along the axis at all nodes.
@@ -194,6 +203,19 @@ impl<'a> Coefficients<'a> {
             for (slot, slope) in source.iter_mut().zip(slopes) {
                 *slot -= slope;
             }
+        }
+        source
+    }
+
+    /// What other unknowns, with another velocity, change of the source.
+    fn change_of_source(
+        &self,
+        (u, change): (&[f64], &[f64]),
+        [velocity, turned]: [f64; 2],
+    ) -> Vec<f64> {
+        let mut source = self.source(change, velocity);
+        for (slot, u) in source.iter_mut().zip(u) {
+            *slot -= turned * u;
         }
         source
     }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::layout::Layout;
 use super::map::PassageMap;
 use super::numbers::Functions;
-use super::operator::{Counted, Operator, Start};
+use super::operator::{Counted, Operator, StartVector};
 use super::survival::Times;
 use crate::cancellation::Cancellation;
 use crate::continuation::PassageFault;
@@ -81,7 +81,7 @@ pub(super) fn with_errors(
     let (without, both) = numbers.split_at(map.groups);
     let starts: Vec<Vec<f64>> = (others.par_iter())
         .map(|weights| {
-            let start = Start::new(map, Counted::All, &cells, weights);
+            let start = StartVector::new(map, Counted::All, &cells, weights);
             functions.numbers(&all, &start, times).0
         })
         .collect();

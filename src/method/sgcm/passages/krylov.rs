@@ -1,10 +1,11 @@
 //! Solves x = b + K x, and finds the largest eigenvalue of K on the way (GMRES and Arnoldi's method in one).
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use super::operator::Operator;
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::numerics::dot;
+use crate::stationary::Triangle;
 
 /// Size of the residual, over that of b, at which a solution is good enough.
 const REDUCTION: f64 = 1e-10;
@@ -17,7 +18,7 @@ const STARTS: usize = 8;
 const PROGRESS: f64 = 0.5;
 
 /// A solution.
-pub(super) struct Solved {
+pub(super) struct LinearSolution {
     pub(super) function: Vec<f64>,
     /// Size of the residual over that of b.
     pub(super) residual: f64,
@@ -30,9 +31,9 @@ pub(super) fn solve(
     operator: &Operator,
     b: &[f64],
     cancellation: &Cancellation,
-) -> Result<Solved, Cancelled> {
+) -> Result<LinearSolution, Cancelled> {
     let size = dot(b, b).sqrt();
-    let mut solved = Solved {
+    let mut solved = LinearSolution {
         function: vec![0.0; b.len()],
         residual: if size > 0.0 { 1.0 } else { 0.0 },
         loss: f64::NAN,
@@ -75,6 +76,7 @@ fn cycle(
 ) -> Result<(Vec<f64>, f64), Cancelled> {
     let size = dot(left, left).sqrt();
     let mut vectors = vec![scaled(left, 1.0 / size)];
+    let mut triangle = Triangle::new(size);
     let mut columns: Vec<Vec<f64>> = Vec::new();
     let weights = loop {
         cancellation.check()?;
@@ -86,7 +88,7 @@ fn cycle(
             .map(|(x, after)| x - after)
             .collect();
         let before = dot(&next, &next).sqrt();
-        let mut column = vec![0.0; vectors.len() + 1];
+        let mut column = vec![0.0; vectors.len()];
         // Twice is enough.
         for _ in 0..2 {
             for (overlap, vector) in column.iter_mut().zip(&vectors) {
@@ -99,17 +101,12 @@ fn cycle(
         }
         let length = dot(&next, &next).sqrt();
         let has_more = length > 1e-14 * before;
-        if let Some(below) = column.last_mut() {
-            *below = if has_more { length } else { 0.0 };
-        }
+        let below = if has_more { length } else { 0.0 };
+        let residual = triangle.push(column.clone(), below);
+        column.push(below);
         columns.push(column);
-        let is_last = !has_more || columns.len() == VECTORS;
-        // Least squares of a small matrix: looked at now and then.
-        if is_last || columns.len().is_multiple_of(8) {
-            let (weights, residual) = least_squares(&columns, size);
-            if is_last || residual <= 0.5 * wanted {
-                break weights;
-            }
+        if !has_more || columns.len() == VECTORS || residual <= 0.5 * wanted {
+            break triangle.solve().0;
         }
         vectors.push(scaled(&next, 1.0 / length));
     };
@@ -126,32 +123,10 @@ fn scaled(vector: &[f64], scale: f64) -> Vec<f64> {
     vector.iter().map(|value| scale * value).collect()
 }
 
-/// The Hessenberg matrix, a row longer than wide.
-fn hessenberg(columns: &[Vec<f64>]) -> DMatrix<f64> {
-    let n = columns.len();
-    let entry = |row: usize, column: usize| columns[column].get(row).copied().unwrap_or(0.0);
-    DMatrix::from_fn(n + 1, n, entry)
-}
-
-/// Weights of vectors with the smallest residual, and its size.
-fn least_squares(columns: &[Vec<f64>], size: f64) -> (Vec<f64>, f64) {
-    let n = columns.len();
-    let mut right = DVector::zeros(n + 1);
-    right[0] = size;
-    let factors = hessenberg(columns).qr();
-    let mut turned = right.clone();
-    factors.q_tr_mul(&mut turned);
-    let residual = turned[n].abs();
-    let top = turned.rows(0, n).into_owned();
-    let weights = factors.r().solve_upper_triangular(&top);
-    let weights = weights.map_or_else(|| vec![0.0; n], |weights| weights.as_slice().to_vec());
-    (weights, residual)
-}
-
-/// Real part of the eigenvalue of the square part that has the least.
+/// The least real part of the eigenvalues of a Hessenberg matrix, by its columns down to the entry below the diagonal.
 fn least_eigenvalue(columns: &[Vec<f64>]) -> f64 {
     let n = columns.len();
-    let square = hessenberg(columns).rows(0, n).into_owned();
-    let values = square.complex_eigenvalues();
+    let entry = |row: usize, column: usize| columns[column].get(row).copied().unwrap_or(0.0);
+    let values = DMatrix::from_fn(n, n, entry).complex_eigenvalues();
     values.iter().map(|value| value.re).fold(f64::NAN, f64::min)
 }

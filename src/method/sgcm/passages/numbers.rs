@@ -2,7 +2,7 @@
 
 use super::krylov::solve;
 use super::moments::{EXITS, SPENT, SQUARE};
-use super::operator::{Operator, Start};
+use super::operator::{Operator, StartVector};
 use super::survival::{Survival, Times};
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::numerics::dot;
@@ -61,7 +61,7 @@ impl Functions {
     pub(super) fn numbers(
         &self,
         operator: &Operator,
-        start: &Start,
+        start: &StartVector,
         times: &Times,
     ) -> (Vec<f64>, Vec<f64>) {
         let mean = start.told[SPENT] + dot(&start.weights, &self.time);

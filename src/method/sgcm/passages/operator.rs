@@ -55,11 +55,11 @@ pub(super) struct Operator {
     /// What is known of paths, a function each.
     pub(super) told: Vec<Vec<f64>>,
     /// What follows the start: for functions after the step, and means of what is known of its paths.
-    pub(super) start: Start,
+    pub(super) start: StartVector,
 }
 
 /// A start as an average.
-pub(super) struct Start {
+pub(super) struct StartVector {
     /// Weights of functions that are linear in cells.
     pub(super) weights: Vec<f64>,
     /// Means of what is known of paths.
@@ -189,7 +189,7 @@ impl Operator {
             ends: Vec::new(),
             blocks: Vec::new(),
             told: vec![Vec::with_capacity(rows * width); count],
-            start: Start::new(map, counted, layout, weights),
+            start: StartVector::new(map, counted, layout, weights),
         };
         let mut row = Row::new(rows, width, count);
         for members in &layout.members {
@@ -267,7 +267,7 @@ impl Operator {
     }
 }
 
-impl Start {
+impl StartVector {
     /// The start with a weight (1, s) in each cell of the map; from a state weights do not matter.
     pub(super) fn new(
         map: &PassageMap,

@@ -4,7 +4,7 @@
 //! part of a step after its start, so that the last step is that part.
 
 use super::moments::{ENDED, EXITS};
-use super::operator::{Operator, Start};
+use super::operator::{Operator, StartVector};
 use crate::numerics::dot;
 
 /// Parts of a map step at whose ends probabilities are known for quantiles.
@@ -69,7 +69,7 @@ impl Times {
 /// A process that is taken on step by step.
 pub(super) struct Survival<'a> {
     pub(super) operator: &'a Operator,
-    pub(super) start: &'a Start,
+    pub(super) start: &'a StartVector,
     pub(super) map_step: f64,
     pub(super) rate: f64,
     pub(super) exits: usize,
