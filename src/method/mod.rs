@@ -37,6 +37,7 @@ mod problem;
 mod range;
 mod report;
 mod sgcm;
+mod step_errors;
 mod sticking;
 mod structure;
 mod swap;

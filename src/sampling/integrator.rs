@@ -51,7 +51,7 @@ words! {
 
 impl Integrator {
     /// Whether increments of four values are drawn in place of normal ones.
-    fn is_for_laws(self) -> bool {
+    pub(crate) fn is_for_laws(self) -> bool {
         matches!(self, Self::WeakHeun | Self::WeakSplitting)
     }
 

@@ -90,8 +90,12 @@ fn by_replicates(
     let read: Vec<_> = replicates.iter().map(&mut read).collect();
     let of = |number: &dyn Fn(&super::extremum::Vertex) -> f64| jackknife(read.iter().map(number));
     let along = |k: usize| of(&|one| one.position[k]);
+    // What sampling is not, as the time step beside a kink, is in the standard errors alone.
+    let sampled = (estimated.variants).sampling_error(|values| values[cell]);
+    let all = estimated.standard_error.get(cell).copied()?;
+    let besides = (all * all - sampled * sampled).max(0.0).sqrt();
     (read.len() > 1).then(|| FeatureErrors {
         position: (0..feature.position.len()).map(along).collect(),
-        density: Some(of(&|one| one.density)),
+        density: Some(of(&|one| one.density).hypot(besides) + estimated.truncated(cell)),
     })
 }

@@ -32,6 +32,7 @@ mod position_planes;
 mod power_tails;
 mod random_systems;
 mod sampled_passages;
+mod sampled_time_steps;
 mod sampled_transitions;
 mod sgcm_passages;
 mod slow_modes;

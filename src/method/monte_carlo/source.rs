@@ -12,6 +12,7 @@ use crate::method::forcing::on_even_turns;
 use crate::method::measures::{Cells, Others};
 use crate::method::problem::Maps;
 use crate::method::report::Reporter;
+use crate::method::step_errors::{add_layers, add_wider};
 use crate::method::structure::{closed_ends, kinked_surfaces};
 use crate::method::watched::Masses;
 use crate::method::{MethodError, Problem, has_densities};
@@ -193,6 +194,10 @@ impl MonteCarloSource {
         for one in &mut densities {
             one.structure = maps.structure(system, problem, mass, one.observable, &self.kinked);
         }
+        let (space, plan) = (problem.space(), &self.plan);
+        let steps = (self.options.integrator, plan.step_of(system, space));
+        add_layers(&mut densities, (system, space), mass, &self.kinked, steps);
+        add_wider(&mut densities, plan.bias.map_or(0.0, |bias| bias.certain()));
         Ok(densities)
     }
 
@@ -238,6 +243,14 @@ impl MonteCarloSource {
         let (space, replicates) = (self.problem.space(), &found.replicates);
         let mut moments = maps.all_sampled_moments(space, &of_axes, &found.mass, replicates)?;
         moments.extend(at_phases(&self.problem, found));
+        let certain = plan.bias.map_or(0.0, |bias| bias.certain());
+        for one in &mut moments {
+            let deviation = 0.5 * certain * one.moments.standard_deviation;
+            *one = one.with(Moments {
+                mean: 0.0,
+                standard_deviation: deviation,
+            });
+        }
         reporter.moments(&moments);
         let more = rotations_and_answers(&self.problem, system, found, plan.bias);
         reporter.report.measures.extend(more);

@@ -20,6 +20,7 @@ use crate::method::MethodError;
 use crate::method::measures::{Cells, Others};
 use crate::method::problem::Maps;
 use crate::method::report::Reporter;
+use crate::method::step_errors::{add_layers, add_wider};
 use crate::method::watched::Masses;
 use crate::monte_carlo::StepBias;
 use crate::sampling::{SampledTransitions, TransitionMatrix};
@@ -87,6 +88,7 @@ impl SgcmSource {
         point: &SampledPoint,
         steady: &SteadyState,
         replicates: &[Vec<f64>],
+        wider: f64,
     ) -> Result<Vec<EstimatedDensity>, MethodError> {
         let system = point.system.as_ref();
         let (problem, surfaces) = (&self.problem, &self.steps.kinked);
@@ -96,6 +98,12 @@ impl SgcmSource {
             let observable = one.observable;
             one.structure = maps.structure(system, problem, &steady.mass, observable, surfaces);
         }
+        let (of, steps) = (
+            (system, problem.space()),
+            (self.options.integrator, self.steps.time_step),
+        );
+        add_layers(&mut densities, of, &steady.mass, surfaces, steps);
+        add_wider(&mut densities, wider);
         Ok(densities)
     }
 
@@ -137,20 +145,14 @@ impl SgcmSource {
         let Replicates {
             masses: replicates, ..
         } = self.replicates(point, correction, slopes, &steady, cancellation)?;
-        let densities = self.densities(point, &steady, &replicates)?;
+        let wider = widening.abs() + bias.map_or(0.0, StepBias::certain);
+        let densities = self.densities(point, &steady, &replicates, wider)?;
         let space = self.problem.space();
         let maps = self.maps(point.value)?;
         let masses = (steady.mass.as_slice(), replicates.as_slice());
-        reporter.moments(&all_moments(
-            &self.problem,
-            &maps,
-            &of_axes,
-            masses,
-            widening,
-        )?);
+        reporter.moments(&all_moments(&self.problem, &maps, &of_axes, masses, wider)?);
         let system = point.system.as_ref();
-        let share = widening.abs() + bias.map_or(0.0, StepBias::certain);
-        let doubts = (share, reporter.missing());
+        let doubts = (wider, reporter.missing());
         let answers = amplitudes(&self.problem, system, masses, doubts);
         reporter.report.measures.extend(answers);
         let turning = velocities(&self.problem, system, masses, doubts);

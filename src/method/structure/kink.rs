@@ -55,6 +55,24 @@ pub(super) fn kink(
     })
 }
 
+/// The intensity b² of the noise across a surface, the mean over the mass of the cells beside it.
+pub(in crate::method) fn intensity_beside(
+    system: &dyn System,
+    space: &CellSpace,
+    masses: &[f64],
+    surface: SwitchingSurface,
+) -> f64 {
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for index in beside(space, surface) {
+        let mut state = space.centre(index);
+        state[surface.axis] = surface.at;
+        let weight = masses[index].max(0.0) + f64::MIN_POSITIVE.sqrt();
+        sum += weight * system.intensity_at(surface.axis, 0.0, &state);
+        weights += weight;
+    }
+    if weights > 0.0 { sum / weights } else { 0.0 }
+}
+
 /// The axis along which a kink of a joint density is told. Along an axis of modes nodes are no bins: the mean of all
 /// holds for each.
 fn beside_axis(space: &CellSpace, axes: &[usize], across: usize) -> Option<usize> {

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use crate::density::{Kink, Observable, Structure};
 use crate::space::CellSpace;
 use crate::system::{self, SwitchingSurface, System, proved_symmetry, symmetry_over_a_period};
+pub(super) use kink::intensity_beside;
 use kink::kink;
 pub(super) use moving::{MovingSurfaces, moving_surfaces};
 use smoothness::{Break, break_at};
