@@ -2,7 +2,7 @@
 
 use super::start::at_nodes_of;
 use super::{Passage, Start};
-use crate::density::Roughness;
+use crate::density::{LEAK_ALLOWANCE, Roughness};
 use crate::generator::{GeneratorError, levels};
 use crate::space::CellSpace;
 
@@ -13,6 +13,11 @@ pub struct KnownDensity<'a> {
     pub unknowns: &'a [f64],
     /// By how much those of a second discretisation differ, Σ = 0; `None` where the density has all its digits.
     pub changes: Option<&'a [f64]>,
+    /// By how much they would differ if what leaves the range stayed in the cells that it leaves from; `None` where
+    /// next to nothing leaves.
+    pub returning: Option<&'a [f64]>,
+    /// Share of the mass that lies beyond the ends of the range.
+    pub beyond: f64,
     /// Axes with coordinates of planes on which the derivative of the density jumps.
     pub planes: &'a [(usize, f64)],
 }
@@ -23,6 +28,12 @@ impl KnownDensity<'_> {
         let changes = self.changes?;
         let pairs = self.unknowns.iter().zip(changes);
         Some(pairs.map(|(own, change)| own + change).collect())
+    }
+
+    /// What the ends of the range may change of a number, given what returning masses change of it, and how far it may
+    /// be from what holds beyond the ends.
+    pub(super) fn of_ends(&self, returning: f64, farthest: f64) -> f64 {
+        LEAK_ALLOWANCE * returning.abs() + self.beyond * farthest
     }
 }
 

@@ -36,6 +36,8 @@ pub(super) struct LaidOut {
     /// The same without the last modes.
     fewer: [Vec<f64>; 2],
     changes: Option<Vec<f64>>,
+    returning: Option<Vec<f64>>,
+    beyond: f64,
 }
 
 impl LaidOut {
@@ -58,6 +60,8 @@ impl LaidOut {
             unknowns: laid(density.unknowns, 0),
             fewer: LEFT_OUT.map(|left_out| laid(density.unknowns, left_out)),
             changes: density.changes.map(|changes| laid(changes, 0)),
+            returning: density.returning.map(|returning| laid(returning, 0)),
+            beyond: density.beyond,
             space: cells,
         }
     }
@@ -78,6 +82,8 @@ impl LaidOut {
         KnownDensity {
             unknowns: &self.unknowns,
             changes: self.changes.as_deref(),
+            returning: self.returning.as_deref(),
+            beyond: self.beyond,
             planes,
         }
     }

@@ -82,15 +82,17 @@ pub(super) fn mass_beside(
         let level = |state: &[f64]| region.at(state);
         masses_in(space, all, (level, &levels), nodes)
     };
-    let first = [Some(density.unknowns), density.changes];
-    let first: Vec<&[f64]> = first.into_iter().flatten().collect();
-    let all: Vec<&[f64]> = (first.iter().copied())
+    let own = [density.unknowns].into_iter();
+    let more = [density.returning, density.changes].into_iter().flatten();
+    let all: Vec<&[f64]> = own
         .chain(others.iter().map(Vec::as_slice))
+        .chain(more)
         .collect();
-    let known = masses(&all, NODES);
+    let mut known = masses(&all, NODES);
     let own = known[0];
     let fewer = masses(&all[..1], FEWER_NODES)[0];
     let changed = density.changes.map_or(0.0, |changes| {
+        let change = known.pop().unwrap_or(0.0);
         // What the changes do were those of neighbouring layers of cells independent: their sum may vanish by chance.
         let of_cell = |level: &f64| f64::from(u8::from(*level < 0.0)) - own;
         let roughness = Roughness {
@@ -100,10 +102,12 @@ pub(super) fn mass_beside(
             planes: density.planes,
         };
         let values: Vec<f64> = levels.iter().map(of_cell).collect();
-        known[1].abs() + roughness.of(&values)
+        change.abs() + roughness.of(&values)
     });
-    let mass = (own, (own - fewer).abs() + changed);
-    Ok((mass, known[first.len()..].to_vec()))
+    let returning = density.returning.and_then(|_| known.pop());
+    let of_ends = density.of_ends(returning.unwrap_or(0.0), own.max(1.0 - own));
+    let mass = (own, (own - fewer).abs() + changed + of_ends);
+    Ok((mass, known.split_off(1)))
 }
 
 #[cfg(test)]
@@ -134,6 +138,8 @@ mod tests {
             let density = KnownDensity {
                 unknowns: &unknowns,
                 changes: None,
+                returning: None,
+                beyond: 0.0,
                 planes: &[],
             };
             let (mass, error) = mass_in(&space, &density, &region).unwrap();

@@ -121,7 +121,9 @@ fn rate([fine, rough]: [&Border<'_>; 2], density: KnownDensity<'_>) -> (Vec<f64>
         let centred: Vec<f64> = own.iter().map(|value| value - rate).collect();
         dot(&own, changes).abs() + roughness.of(&centred)
     });
-    let error = others.iter().sum::<f64>() + changed;
+    let returning = density.returning.map_or(0.0, |values| dot(&own, values));
+    let of_ends = density.of_ends(returning, rate);
+    let error = others.iter().sum::<f64>() + changed + of_ends;
     (own, (rate, error))
 }
 

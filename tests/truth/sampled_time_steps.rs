@@ -50,10 +50,7 @@ impl Friction {
             ..
         } = self;
         let model = TypedModel::new("friction", "Dry friction", ["v"])
-            .with_equation(
-                "v",
-                format!("theta - {damping} v - {level} sign(v - {at})"),
-            )
+            .with_equation("v", format!("theta - {damping} v - {level} sign(v - {at})"))
             .with_noise("v", [format!("sqrt({intensity})")])
             .with_parameters(["theta"]);
         let path = Path::parameter("theta", self.theta, self.theta + 1e-3);

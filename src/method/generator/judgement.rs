@@ -22,7 +22,7 @@ use crate::density::EstimatedDensity;
 use crate::generator::{cell_masses, resolution, summed_to_walls};
 use crate::method::forcing::Forced;
 use crate::method::measures::{Cells, Others};
-use crate::method::report::{QUIET_ESCAPE, Reporter};
+use crate::method::report::{Missing, QUIET_ESCAPE, Reporter};
 use crate::method::watched::planes;
 use crate::method::{MethodError, Problem, natural_ends};
 use crate::stationary::generator::{RateError, RateInfo};
@@ -30,8 +30,8 @@ use crate::stationary::generator::{RateError, RateInfo};
 /// Escape per unit time below which mass is said to stay in Ω, and relaxation is not looked at.
 const NO_ESCAPE: f64 = 1e-12;
 
-/// A solution, and the trail that leads on from it where there is one.
-type Judged = (Solution<'static>, Option<Trail>);
+/// A solution, and where there is one the trail that leads on from it, with what the ends of the ranges cut off.
+type Judged = (Solution<'static>, Option<(Trail, Missing)>);
 
 impl GeneratorSession {
     /// Judges a solution and turns it into densities. No error is known of a state of which another scheme's cannot be
@@ -91,8 +91,9 @@ impl GeneratorSession {
         }
         let (mut densities, second) = self.densities(solved, &masses)?;
         let mut without_last_modes = None;
+        let missing = reporter.missing();
         if solved.second.is_some() {
-            self.truncate(solved, &masses, reporter.missing(), &mut densities)?;
+            self.truncate(solved, &masses, missing, &mut densities)?;
             without_last_modes = self.add_last_modes(solved, &masses, &mut densities)?;
         }
         // What is negative along a series is told of its modes.
@@ -161,7 +162,10 @@ impl GeneratorSession {
         }
         Ok((
             reporter.solution(densities, Some(&cells)),
-            Some(trail_after(solved, second.change, relaxation, before)),
+            Some((
+                trail_after(solved, second.change, relaxation, before),
+                missing,
+            )),
         ))
     }
 

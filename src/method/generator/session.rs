@@ -15,7 +15,6 @@ use super::passages::{add_passages, at_nodes};
 use super::second::companion;
 use super::sensitivity::GeneratorSensitivity;
 use super::slow_modes::add_slow_modes;
-use super::source::Known;
 use super::spectra::add_spectra;
 use super::stand::Stand;
 use super::trail::Trail;
@@ -98,10 +97,17 @@ impl GeneratorSession {
         if let Some(found) = one_axis::masses(&self.source, system.as_ref()) {
             let mut solution = one_axis::solution(&self.source, value, system.as_ref(), &found)?;
             let (unknowns, changes) = at_nodes(&found.masses);
-            let known = Some((unknowns.as_slice(), changes.as_slice()));
             let Solution {
                 report, densities, ..
             } = &mut solution;
+            let beyond = densities.iter().map(|one| one.truncation.share);
+            let known = Some(KnownDensity {
+                unknowns: &unknowns,
+                changes: Some(&changes),
+                returning: None,
+                beyond: beyond.fold(0.0, f64::max),
+                planes: &planes(&self.source.kinked),
+            });
             let reach = one_axis::reach(&self.source, system.as_ref(), &found);
             self.add_asked(report, value, (&system, reach), (known, None, densities))?;
             return Ok(solution);
@@ -117,9 +123,18 @@ impl GeneratorSession {
         let mut solved = self.solved(value, system, guess.as_deref(), expected.as_deref())?;
         solved.steady.info.factorisations = self.solver.factorisations() - factorisations;
         solved.third = self.by_third_scheme(&solved)?;
-        let (mut solution, trail) = self.judge(&solved, before.as_ref())?;
+        let (mut solution, judged) = self.judge(&solved, before.as_ref())?;
+        let (trail, missing) = judged.unzip();
+        let returning = self.returning(&solved, missing)?;
         let newest = trail.as_ref().and_then(Trail::newest);
-        let known = newest.map(|newest| (newest.mass.as_slice(), newest.difference.as_slice()));
+        let planes = planes(&self.source.kinked);
+        let known = newest.map(|newest| KnownDensity {
+            unknowns: &newest.mass,
+            changes: Some(&newest.difference),
+            returning: returning.as_deref(),
+            beyond: missing.map_or(0.0, |missing| missing.beyond),
+            planes: &planes,
+        });
         let Solution {
             report, densities, ..
         } = &mut solution;
@@ -142,26 +157,23 @@ impl GeneratorSession {
     }
 
     /// Adds what is asked of first passages, slow modes and spectra at a value, unless densities are all that is asked
-    /// for; `known` are the unknowns of the steady state, and by how much those of another discretisation differ, and
-    /// those of a third scheme, where there is one; `watched` are its densities. With a reach of one axis they are
-    /// those of a line.
+    /// for; `density` is the steady state, with what a third scheme changes of its unknowns where there is one, and
+    /// `watched` are its densities. With a reach of one axis they are those of a line.
     fn add_asked(
         &self,
         report: &mut SolveReport,
         value: f64,
         (system, reach): (&Arc<dyn System>, Option<Reach<'_>>),
-        (known, third, watched): (Option<Known<'_>>, Option<&[f64]>, &[EstimatedDensity]),
+        (density, third, watched): (
+            Option<KnownDensity<'_>>,
+            Option<&[f64]>,
+            &[EstimatedDensity],
+        ),
     ) -> Result<(), MethodError> {
         // Questions are asked in coordinates that stay.
         if self.source.checks || self.source.problem.family().has_moving_origin() {
             return Ok(());
         }
-        let planes = planes(&self.source.kinked);
-        let density = known.map(|(unknowns, changes)| KnownDensity {
-            unknowns,
-            changes: Some(changes),
-            planes: &planes,
-        });
         let (problem, options) = (&self.source.problem, &self.source.options);
         let (asked, cancellation) = ((problem, value), &self.cancellation);
         add_passages(
@@ -173,8 +185,9 @@ impl GeneratorSession {
             cancellation,
         )?;
         let at = (system, value);
+        let known = density.map(|one| (one.unknowns, one.changes.unwrap_or(&[])));
         add_largest_exponent(report, &self.source, at, (known, third), cancellation)?;
-        let unknowns = known.map(|(unknowns, _)| unknowns);
+        let unknowns = density.map(|one| one.unknowns);
         let asks = &problem.family().questions;
         let is_line_asked = asks.spectrum.is_some() || asks.asks_for_modes();
         let reach = reach.filter(|_| is_line_asked && !problem.subject().measures.is_empty());

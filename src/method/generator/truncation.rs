@@ -14,14 +14,20 @@ use crate::method::report::Missing;
 /// Relative error of an answer, to what ends do or to what modes do that are not there.
 pub(super) const OF_AN_ANSWER: f64 = 0.1;
 
-/// Most terms of the series.
-const TERMS: usize = 4;
+/// Share of the mass that leaves within a relaxation time below which it changes no number that is asked for.
+const NO_LEAK: f64 = 1e-12;
 
-/// Share of the mass below which a term is the last.
-const LAST_TERM: f64 = 0.001;
+/// Relative error of a term of the series: with a rough one the next, which lives beside the ends, is too small by half.
+const OF_A_TERM: f64 = 1e-3;
+
+/// Most terms of the series.
+const TERMS: usize = 6;
+
+/// Share of the first term below which a term is the last.
+const LAST_TERM: f64 = 0.03;
 
 /// Largest ratio of terms that is believed.
-const LARGEST_RATIO: f64 = 0.8;
+const LARGEST_RATIO: f64 = 0.95;
 
 impl GeneratorSession {
     /// Adds to densities of solved masses what the ends may have changed.
@@ -45,7 +51,9 @@ impl GeneratorSession {
                 .for_each(|one| one.truncation.share = share);
             return Ok(());
         }
-        let difference = self.by_closed_ends(solved, masses)?;
+        let closed = self.by_closed_ends(solved)?;
+        let closed = cell_masses(solved.system.as_ref(), self.source.problem.space(), &closed);
+        let difference: Vec<f64> = closed.iter().zip(masses).map(|(a, b)| a - b).collect();
         let moved: f64 = difference.iter().map(|change| change.abs()).sum();
         let maps = self.source.maps(solved.value)?;
         let changes = maps.changes(&self.source.problem, &difference)?;
@@ -61,35 +69,55 @@ impl GeneratorSession {
         Ok(())
     }
 
-    /// What the masses would change by if what leaves stayed where it leaves from: a series, of which each term is what
-    /// the one before lets out.
-    fn by_closed_ends(
+    /// By how much the unknowns would differ if what leaves stayed where it leaves from, where visits or passages are
+    /// asked for.
+    pub(super) fn returning(
         &mut self,
         solved: &PointSolve,
-        masses: &[f64],
-    ) -> Result<Vec<f64>, MethodError> {
+        missing: Option<Missing>,
+    ) -> Result<Option<Vec<f64>>, MethodError> {
+        let questions = &self.source.problem.family().questions;
+        let is_asked = !(questions.visits.is_empty() && questions.passages.is_empty());
+        let leaks = missing.is_some_and(|missing| missing.leak > NO_LEAK);
+        if !is_asked || !leaks || self.source.checks {
+            return Ok(None);
+        }
+        let closed = self.by_closed_ends(solved)?;
+        let pairs = closed.iter().zip(&solved.steady.mass);
+        Ok(Some(pairs.map(|(closed, own)| closed - own).collect()))
+    }
+
+    /// What the unknowns would be if what leaves stayed where it leaves from: a series, of which each term is what the
+    /// one before lets out.
+    pub(super) fn by_closed_ends(&mut self, solved: &PointSolve) -> Result<Vec<f64>, MethodError> {
         let unknowns = &solved.steady.mass;
         let mut closed = unknowns.clone();
         let mut term = unknowns.clone();
-        let mut size: f64 = unknowns.iter().map(|mass| mass.abs()).sum();
-        let enough = LAST_TERM * size;
+        let mut sizes: Vec<f64> = Vec::new();
         for number in 1..=TERMS {
             let back = solved.escape.iter().zip(&term);
             let back: Vec<f64> = back.map(|(rate, mass)| rate * mass).collect();
-            term = self.solver.response(&back, unknowns, None, OF_AN_ANSWER)?;
-            let before = std::mem::replace(&mut size, term.iter().map(|one| one.abs()).sum());
+            term = self.solver.response(&back, unknowns, None, OF_A_TERM)?;
+            sizes.push(term.iter().map(|one| one.abs()).sum());
+            // What is let out again leaves most likely at once: the second term may be as large as the first, which says
+            // nothing of those after it.
+            let (size, before) = match sizes.as_slice() {
+                [.., before, size] => (*size, *before),
+                _ => (f64::INFINITY, f64::INFINITY),
+            };
             // The last term stands for those after it.
-            let ratio = (size / before).min(LARGEST_RATIO);
-            let is_last = number == TERMS || size < enough;
-            let rest = if is_last { 1.0 / (1.0 - ratio) } else { 1.0 };
+            let is_last = number == TERMS || size < LAST_TERM * sizes[0];
+            let rest = if is_last {
+                1.0 / (1.0 - (size / before).min(LARGEST_RATIO))
+            } else {
+                1.0
+            };
             let pairs = closed.iter_mut().zip(&term);
             pairs.for_each(|(sum, term)| *sum += rest * term);
             if is_last {
                 break;
             }
         }
-        let space = self.source.problem.space();
-        let closed = cell_masses(solved.system.as_ref(), space, &closed);
-        Ok(closed.iter().zip(masses).map(|(a, b)| a - b).collect())
+        Ok(closed)
     }
 }
