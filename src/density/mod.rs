@@ -164,6 +164,9 @@ pub struct Truncation {
     pub share: f64,
     /// By how much each value may be off besides, with its sign; nothing where no more than the share is.
     pub change: Vec<f64>,
+    /// The density at open ends of the ranges: what is as low elsewhere may be off by as much, because the states there
+    /// may be those that come from beyond the ends.
+    pub level: f64,
 }
 
 impl Truncation {
@@ -265,7 +268,7 @@ impl EstimatedDensity {
     pub(crate) fn truncated(&self, cell: usize) -> f64 {
         let value = self.density.values.get(cell).unwrap_or(&0.0);
         let change = self.truncation.change.get(cell).unwrap_or(&0.0);
-        self.truncation.share * value.abs() + change.abs()
+        self.truncation.share * value.abs() + change.abs() + self.truncation.level
     }
 
     /// Whether its values carry noise, as those of sampled methods do; else its errors are those of a grid.

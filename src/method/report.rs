@@ -44,6 +44,8 @@ pub(super) struct Reporter<'a> {
     beyond: Vec<[Beyond; 2]>,
     /// Share of the mass that leaves within one relaxation time.
     leak: f64,
+    /// The largest density at an open end, over the largest along the axis.
+    level: f64,
 }
 
 /// Shares of the mass that a solution may lack.
@@ -53,6 +55,8 @@ pub(super) struct Missing {
     pub(super) beyond: f64,
     /// What leaves within one relaxation time.
     pub(super) leak: f64,
+    /// The largest density at an open end, over the largest along the axis.
+    pub(super) level: f64,
 }
 
 impl<'a> Reporter<'a> {
@@ -63,6 +67,7 @@ impl<'a> Reporter<'a> {
             report: SolveReport::solved(method),
             beyond: Vec::new(),
             leak: 0.0,
+            level: 0.0,
         }
     }
 
@@ -72,6 +77,7 @@ impl<'a> Reporter<'a> {
         Missing {
             beyond: self.beyond.iter().flatten().map(|end| end.mass).sum(),
             leak: self.leak,
+            level: self.level,
         }
     }
 
@@ -168,6 +174,8 @@ impl<'a> Reporter<'a> {
     /// Mass in the cells at the ends of each axis that are not walls of the system.
     pub(super) fn edge_mass(&mut self, mass: &[f64], closed: &[[bool; 2]]) {
         let tails = tails::tails(self.space(), mass, closed);
+        let levels = tails.iter().flatten().map(|end| end.level);
+        self.level = levels.fold(0.0, f64::max);
         self.beyond = tails
             .iter()
             .map(|ends| ends.map(|end| end.beyond))

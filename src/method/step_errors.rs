@@ -64,8 +64,8 @@ pub(super) fn add_layers(
     }
 }
 
-/// Adds to what is stated besides standard errors how densities change with the intensity of the noise, which is larger
-/// by a share: -s p (log p - ⟨log p⟩), exact where p is exp(-U/D).
+/// Adds to the standard errors how densities change with the intensity of the noise, which is larger by a share:
+/// -s p (log p - ⟨log p⟩), exact where p is exp(-U/D).
 pub(super) fn add_wider(densities: &mut [EstimatedDensity], share: f64) {
     if share == 0.0 || !share.is_finite() {
         return;
@@ -81,15 +81,12 @@ pub(super) fn add_wider(densities: &mut [EstimatedDensity], share: f64) {
         let (total, sum) = known.fold((0.0, 0.0), |(total, sum), (mass, logarithm)| {
             (total + mass, sum + mass * logarithm)
         });
-        let change = one.density.values.iter().zip(&logarithms);
-        let change = change.map(|(&value, logarithm)| {
+        let values = one.density.values.iter().zip(&logarithms);
+        for (error, (&value, logarithm)) in one.standard_error.iter_mut().zip(values) {
             if value > 0.0 {
-                -share * value * (logarithm - sum / total)
-            } else {
-                0.0
+                *error = error.hypot(share * value * (logarithm - sum / total));
             }
-        });
-        one.truncation.add(&change.collect::<Vec<_>>());
+        }
     }
 }
 

@@ -8,6 +8,9 @@ use crate::space::{Axis, CellSpace};
 /// there no end, but for a share of exp(-2): nearer to it what leaves is missing.
 const FROM_END: f64 = 2.0;
 
+/// Cells between an end and the one whose density is hardly thinned out by what leaves.
+const CELLS_FROM_END: usize = 2;
+
 /// Share of the density that is there at that distance.
 fn share_told() -> f64 {
     1.0 - (-FROM_END).exp()
@@ -22,6 +25,8 @@ const LEAST_POWER: f64 = 2.0;
 pub(super) struct Tail {
     /// Mass in the outermost cells.
     pub(super) outer: f64,
+    /// The density beside the end, before what leaves thins it out, over the largest along the axis.
+    pub(super) level: f64,
     /// What lies beyond the end, were the density to go on falling as it does near it.
     pub(super) beyond: Beyond,
 }
@@ -115,7 +120,16 @@ impl Inward {
         }
     }
 
+    /// The density of the third cell from the end over the largest one.
+    fn level(&self) -> f64 {
+        let density = |&(mass, width): &(f64, f64)| (mass / width).max(0.0);
+        let largest = self.cells.iter().map(density).fold(0.0, f64::max);
+        let beside = self.cells.get(CELLS_FROM_END).map_or(0.0, density);
+        if largest > 0.0 { beside / largest } else { 0.0 }
+    }
+
     fn tail(&self) -> Tail {
+        let level = self.level();
         let outer = self.cells.first().map_or(0.0, |(mass, _)| *mass);
         let mut beyond = Beyond {
             mass: outer.max(0.0),
@@ -143,13 +157,18 @@ impl Inward {
                 growth,
             };
             if rate * face - 0.5 * rate * width >= FROM_END {
-                return Tail { outer, beyond };
+                return Tail {
+                    outer,
+                    level,
+                    beyond,
+                };
             }
         }
         // Nearer to the end the fall tells about how much is beyond, and not how it goes on.
         let mass = beyond.mass;
         Tail {
             outer,
+            level,
             beyond: Beyond {
                 mass,
                 ..Beyond::default()

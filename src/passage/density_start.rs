@@ -23,11 +23,26 @@ pub struct KnownDensity<'a> {
 }
 
 impl KnownDensity<'_> {
-    /// The unknowns of the second discretisation.
+    /// The unknowns of the second discretisation, with what returns.
     pub(super) fn second(&self) -> Option<Vec<f64>> {
-        let changes = self.changes?;
-        let pairs = self.unknowns.iter().zip(changes);
-        Some(pairs.map(|(own, change)| own + change).collect())
+        let mut second = self.unknowns.to_vec();
+        let changes = second.iter_mut().zip(self.changes?);
+        changes.for_each(|(own, change)| *own += change);
+        if let Some(returning) = self.returning {
+            let pairs = second.iter_mut().zip(returning);
+            pairs.for_each(|(own, change)| *own += LEAK_ALLOWANCE * change);
+        }
+        Some(second)
+    }
+
+    /// By how much each unknown may be off: the changes of the second discretisation and what returns.
+    pub(super) fn sizes_of_changes(&self) -> Option<Vec<f64>> {
+        let mut sizes: Vec<f64> = self.changes?.iter().map(|change| change.abs()).collect();
+        if let Some(returning) = self.returning {
+            let pairs = sizes.iter_mut().zip(returning);
+            pairs.for_each(|(size, change)| *size += LEAK_ALLOWANCE * change.abs());
+        }
+        Some(sizes)
     }
 
     /// What the ends of the range may change of a number, given what returning masses change of it, and how far it may
@@ -74,7 +89,8 @@ impl<'a> DensityStart<'a> {
     }
 
     /// Error of the average over the start of a field that is known at the kept cells: what the second discretisation
-    /// changes, and what its changes would do were those of neighbouring layers of cells independent.
+    /// changes, what its changes would do were those of neighbouring layers of cells independent, and what the ends of
+    /// the ranges do.
     pub(super) fn error(&self, field: &[f64]) -> f64 {
         let space = self.space;
         let [target, start] = &self.levels;
@@ -97,6 +113,12 @@ impl<'a> DensityStart<'a> {
             differences: self.changes,
             planes: self.density.planes,
         };
-        super::dot(&values, self.changes).abs() + roughness.of(&values)
+        let returning = self.density.returning;
+        let returning = returning.map_or(0.0, |change| super::dot(&values, change));
+        let farthest = values
+            .iter()
+            .fold(0.0, |most: f64, one| most.max(one.abs()));
+        let of_ends = self.density.of_ends(returning, farthest);
+        super::dot(&values, self.changes).abs() + roughness.of(&values) + of_ends
     }
 }

@@ -70,7 +70,7 @@ pub fn reactive(
             cancellation,
         },
         steady: Steady::new(space, density.unknowns),
-        changes: density.changes.map(|changes| Steady::bound(space, changes)),
+        changes: (density.sizes_of_changes()).map(|changes| Steady::bound(space, &changes)),
         masses: mass_in(space, &density, from)?,
     };
     let [finest, coarse, coarsest] = on_three_grids(|factor| question.on_grid(factor))?;

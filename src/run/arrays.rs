@@ -111,7 +111,7 @@ impl Layout {
         let mut layout = Self::of_cells(family, estimate, part.name(family, observable), long_name);
         match (part, &estimate.variants) {
             (DensityPart::Density, _) => return layout.with_facts(family, estimate),
-            (DensityPart::Truncated, _) => layout.dimensions.truncate(1),
+            (DensityPart::Truncated | DensityPart::EndLevel, _) => layout.dimensions.truncate(1),
             (DensityPart::Replicates, Variants::Jackknife(all)) => {
                 let count = all.len() as u64;
                 layout.dimensions.insert(1, (REPLICATE.to_owned(), count));
@@ -230,6 +230,8 @@ pub(super) enum DensityPart {
     Closed,
     /// The share by which the ends of the ranges may have changed all of the density.
     Truncated,
+    /// The density at open ends of the ranges.
+    EndLevel,
     /// The densities without one group of samples each.
     Replicates,
     /// Its kinks, an array each.
@@ -238,7 +240,7 @@ pub(super) enum DensityPart {
 
 words! {
     DensityPart, ending: Density: "", Error: "_error", Second: "_second", Closed: "_closed", Truncated: "_truncated",
-    Replicates: "_replicate", Kinks: "_kink_"
+    EndLevel: "_end_level", Replicates: "_replicate", Kinks: "_kink_"
 }
 
 impl DensityPart {
@@ -255,6 +257,7 @@ impl DensityPart {
             Self::Second => "second discretisation of the ",
             Self::Closed => "what closed ends may change of the ",
             Self::Truncated => "share by which ends may have changed the ",
+            Self::EndLevel => "open ends' level of the ",
             Self::Replicates => "replicates of the ",
             Self::Kinks => "kinks of the ",
         }
@@ -268,6 +271,7 @@ impl DensityPart {
             Self::Truncated => {
                 format!("share by which ends of the ranges may have changed the {density}")
             }
+            Self::EndLevel => format!("level of the {density} at open ends of the ranges"),
             Self::Replicates => format!("{density} without one group of samples each"),
             part => format!("{}{density}", part.before()),
         }

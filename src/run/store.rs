@@ -133,6 +133,14 @@ impl<'a> Store<'a> {
                 share,
             );
         }
+        if truncation.level > 0.0 {
+            let level = vec![vec![truncation.level].into()];
+            self.put(
+                Layout::part(DensityPart::EndLevel, family, estimate),
+                index,
+                level,
+            );
+        }
         if !truncation.change.is_empty() {
             let change = whole(&truncation.change);
             self.put(

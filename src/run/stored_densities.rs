@@ -40,6 +40,7 @@ struct Observed {
     error: StoredArray,
     second: Option<StoredArray>,
     truncated: Option<StoredArray>,
+    end_level: Option<StoredArray>,
     closed: Option<StoredArray>,
     replicates: Option<StoredArray>,
     centre: Option<Vec<f64>>,
@@ -215,14 +216,14 @@ impl Observed {
             None => Ok(Vec::new()),
         };
         let known = |values: &Vec<f64>| !is_missing(values);
-        let (share, change) = (read(&self.truncated)?, read(&self.closed)?);
+        let single = |values: Vec<f64>| {
+            let first = values.first().copied();
+            first.filter(|value| value.is_finite()).unwrap_or(0.0)
+        };
         Ok(Truncation {
-            share: share
-                .first()
-                .copied()
-                .filter(|share| share.is_finite())
-                .unwrap_or(0.0),
-            change: Some(change).filter(known).unwrap_or_default(),
+            share: single(read(&self.truncated)?),
+            change: Some(read(&self.closed)?).filter(known).unwrap_or_default(),
+            level: single(read(&self.end_level)?),
         })
     }
 

@@ -72,6 +72,7 @@ impl<'a> Cover<'a> {
             truncation: Truncation {
                 share: own.truncation.share,
                 change: pick(&own.truncation.change),
+                level: own.truncation.level,
             },
         };
         Some(Self { own, laid })

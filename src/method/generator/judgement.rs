@@ -15,6 +15,7 @@ use super::session::{FINE, GeneratorSession, PointSolve, ROUGH};
 use super::source::{METHOD, SHARP};
 use super::third::again;
 use super::trail::{self, Trail};
+use super::truncation::CutOff;
 use super::unknowns::{by_schemes, negative_mass, summed_over_modes, with_walls};
 use crate::continuation::measure::{ESCAPE_RATE, FACTORISATIONS, NEGATIVE_MASS};
 use crate::continuation::{Finding, Measure, Solution};
@@ -22,7 +23,7 @@ use crate::density::EstimatedDensity;
 use crate::generator::{cell_masses, resolution, summed_to_walls};
 use crate::method::forcing::Forced;
 use crate::method::measures::{Cells, Others};
-use crate::method::report::{Missing, QUIET_ESCAPE, Reporter};
+use crate::method::report::{QUIET_ESCAPE, Reporter};
 use crate::method::watched::planes;
 use crate::method::{MethodError, Problem, natural_ends};
 use crate::stationary::generator::{RateError, RateInfo};
@@ -31,7 +32,7 @@ use crate::stationary::generator::{RateError, RateInfo};
 const NO_ESCAPE: f64 = 1e-12;
 
 /// A solution, and where there is one the trail that leads on from it, with what the ends of the ranges cut off.
-type Judged = (Solution<'static>, Option<(Trail, Missing)>);
+type Judged = (Solution<'static>, Option<(Trail, CutOff)>);
 
 impl GeneratorSession {
     /// Judges a solution and turns it into densities. No error is known of a state of which another scheme's cannot be
@@ -91,9 +92,9 @@ impl GeneratorSession {
         }
         let (mut densities, second) = self.densities(solved, &masses)?;
         let mut without_last_modes = None;
-        let missing = reporter.missing();
+        let mut cut_off = CutOff::default();
         if solved.second.is_some() {
-            self.truncate(solved, &masses, missing, &mut densities)?;
+            cut_off = self.truncate(solved, reporter.missing(), &mut densities)?;
             without_last_modes = self.add_last_modes(solved, &masses, &mut densities)?;
         }
         // What is negative along a series is told of its modes.
@@ -164,7 +165,7 @@ impl GeneratorSession {
             reporter.solution(densities, Some(&cells)),
             Some((
                 trail_after(solved, second.change, relaxation, before),
-                missing,
+                cut_off,
             )),
         ))
     }

@@ -124,15 +124,15 @@ impl GeneratorSession {
         solved.steady.info.factorisations = self.solver.factorisations() - factorisations;
         solved.third = self.by_third_scheme(&solved)?;
         let (mut solution, judged) = self.judge(&solved, before.as_ref())?;
-        let (trail, missing) = judged.unzip();
-        let returning = self.returning(&solved, missing)?;
+        let (trail, cut_off) = judged.unzip();
+        let cut_off = cut_off.unwrap_or_default();
         let newest = trail.as_ref().and_then(Trail::newest);
         let planes = planes(&self.source.kinked);
         let known = newest.map(|newest| KnownDensity {
             unknowns: &newest.mass,
             changes: Some(&newest.difference),
-            returning: returning.as_deref(),
-            beyond: missing.map_or(0.0, |missing| missing.beyond),
+            returning: cut_off.returning.as_deref(),
+            beyond: cut_off.beyond,
             planes: &planes,
         });
         let Solution {

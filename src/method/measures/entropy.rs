@@ -71,7 +71,9 @@ fn entropy(estimated: &EstimatedDensity) -> Option<(f64, f64)> {
                 _ => 0.0,
             };
             let grid = (within - 0.25 * coarse.within(&merged)).abs();
-            (plain - within, scheme + grid + below)
+            let value = plain - within;
+            let of_ends = cells.of_ends(estimated, value);
+            (value, scheme + grid + below + of_ends)
         }
     })
 }
@@ -82,6 +84,30 @@ struct Cells {
 }
 
 impl Cells {
+    /// What the ends of the ranges may change: dS = -∫ (ln p + 1) dp of what returns, and what lies beyond them, whose
+    /// densities are those at the border at most.
+    fn of_ends(&self, estimated: &EstimatedDensity, value: f64) -> f64 {
+        let (values, truncation) = (&estimated.density.values, &estimated.truncation);
+        let slope = |value: f64| if value > 0.0 { value.ln() + 1.0 } else { 0.0 };
+        let (mut returning, mut moved) = (0.0, 0.0);
+        for (cell, (&value, change)) in self.all().zip(values.iter().zip(&truncation.change)) {
+            let mass = change * self.volume(cell);
+            returning += slope(value) * mass;
+            moved += mass.abs();
+        }
+        // The share holds what moves as well.
+        let beyond = (truncation.share - moved).max(0.0);
+        let last = [0, 1].map(|axis: usize| self.widths[axis].len() - 1);
+        let border = self
+            .all()
+            .zip(values)
+            .filter(|(cell, _)| (0..2).any(|axis| cell[axis] == 0 || cell[axis] == last[axis]));
+        let farthest = border
+            .map(|(_, &value)| slope(value).abs())
+            .fold(0.0, f64::max);
+        f64::abs(returning) + beyond * (value.abs() + farthest)
+    }
+
     fn volume(&self, [row, column]: [usize; 2]) -> f64 {
         self.widths[0][row] * self.widths[1][column]
     }

@@ -118,6 +118,15 @@ pub(crate) fn columns_of_family(family: &Family) -> Vec<MeasureColumn> {
     columns.chain(forcing::forcing_columns(family)).collect()
 }
 
+/// Whether something that is asked of a steady state has an error of its own by what leaves through the ends of the
+/// ranges.
+pub(super) fn ask_for_ends(subject: &Subject) -> bool {
+    let questions = &subject.family.questions;
+    let is_asked = !(questions.visits.is_empty() && questions.passages.is_empty());
+    let mut columns = subject.measures.iter();
+    columns.any(|column| is_asked || column.kind == entropy::ENTROPY.kind)
+}
+
 /// Of what a family asks for, that without which some measures have no numbers.
 pub(crate) fn questions_about(family: &Family, asked: &[MeasureLevel]) -> Questions {
     let is_it = |column: MeasureColumn| {

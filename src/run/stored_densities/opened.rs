@@ -116,6 +116,7 @@ impl Opened {
             error: self.shaped(&DensityPart::Error.name(family, observable), &shape)?,
             second: self.optional(&DensityPart::Second.name(family, observable), &shape)?,
             truncated: self.optional(&DensityPart::Truncated.name(family, observable), &[])?,
+            end_level: self.optional(&DensityPart::EndLevel.name(family, observable), &[])?,
             closed: self.optional(&DensityPart::Closed.name(family, observable), &shape)?,
             replicates: self.optional(&DensityPart::Replicates.name(family, observable), &shape)?,
             centre: centre.filter(|centre| centre.len() == axes.len()),
