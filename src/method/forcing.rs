@@ -121,6 +121,21 @@ impl Forced<'_> {
         terms.sum()
     }
 
+    /// x cos 2πs and x sin 2πs at all nodes: the means of both are halves of the parts of the first amplitude.
+    pub(super) fn quadratures(&self, axis: usize) -> [Vec<f64>; 2] {
+        let nodes = self.space.axes()[axis].nodes();
+        let waves = self.waves(1);
+        let of = |part: fn(&Complex<f64>) -> f64| {
+            let cells = 0..self.space.n_cells();
+            let values = cells.map(|cell| {
+                let position = |axis| self.space.position(cell, axis);
+                nodes[position(axis)] * part(&waves[position(self.phase)])
+            });
+            values.collect()
+        };
+        [of(|wave| wave.re), of(|wave| wave.im)]
+    }
+
     /// e^{-2πiks} at the nodes of the phase.
     fn waves(&self, k: usize) -> Vec<Complex<f64>> {
         let nodes = self.space.axes()[self.phase].nodes().iter();

@@ -235,6 +235,7 @@ impl GeneratorSession {
             change,
             error: solved.steady.info.error_estimate,
             shifts,
+            planes: &planes(&self.source.kinked),
         };
         forced.measures(family, |axis| amplitude(&forced, &solved, axis))
     }
