@@ -68,8 +68,10 @@ mod features_table;
 mod findings;
 mod folder;
 mod growing;
+mod holding_shard;
 mod job_folder;
 mod journal;
+mod kept_detections;
 mod latex;
 mod layout;
 mod levels_table;
@@ -143,13 +145,13 @@ pub use names::check_names;
 pub(crate) use names::check_names_compared;
 pub(crate) use number::{format_number, format_with_error};
 
+pub(crate) use place::shard_folder;
 pub use plane_file::{StoredPlane, StoredPlaneContent};
 pub(crate) use points_table::points_csv;
 pub(crate) use provenance::Provenance;
 pub use sentences::finding_in_words;
 #[cfg(feature = "cli")]
 pub(crate) use sentences::fixed_point_in_words;
-pub(crate) use shards::shard_folder;
 pub(crate) use shards::{Gathered, Shards};
 pub(crate) use staged::StagedRun;
 pub use stored_run::StoredRun;

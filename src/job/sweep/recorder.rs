@@ -2,7 +2,7 @@
 
 use crate::continuation::{CheckedIndicator, Observer, Point};
 use crate::job::{Context, Progress};
-use crate::run::{JobFolder, JournalledSource, Manifest, RunError, RunFolder};
+use crate::run::{Gathered, JobFolder, Journal, JournalledSource, Manifest, RunError, RunFolder};
 use crate::sweep_file::Sweep;
 
 /// Failures as observers hand them on.
@@ -16,8 +16,9 @@ pub(super) struct Recorder<'a> {
     pub(super) manifest: Manifest,
     pub(super) context: &'a Context<'a>,
     pub(super) source: &'a JournalledSource,
-    /// What shards saw in their checks.
-    pub(super) checks: Vec<CheckedIndicator>,
+    pub(super) journal: &'a Journal,
+    /// What shards have solved, and saw in their checks.
+    pub(super) known: Gathered,
     /// Points of earlier processes that have not come from the journal yet. Then the tables that are there are
     /// replaced.
     pub(super) missing: usize,
@@ -66,6 +67,8 @@ impl Recorder<'_> {
 impl Observer for Recorder<'_> {
     fn point(&mut self, point: &Point, done: usize, remaining: usize) -> Result<(), Failure> {
         (self.context.observer)(&Progress::Solved(point));
+        let family = self.sweep.problem.family();
+        self.known.holders.keep(self.journal, family, point)?;
         if self.source.is_stored(point.value) {
             self.missing = self.missing.saturating_sub(1);
             self.held.push(point.clone());
@@ -92,7 +95,19 @@ impl Observer for Recorder<'_> {
         ));
     }
 
+    fn known_points(&mut self) -> Vec<Point> {
+        let points = std::mem::take(&mut self.known.points);
+        let is_left = |point: &&Point| point.detections.is_empty() && !point.densities.is_empty();
+        let left = points.iter().filter(is_left).count();
+        if left > 0 {
+            let all = points.len();
+            let words = format!("detecting in {left} of {all} values that shards have solved");
+            self.context.say(&words);
+        }
+        points
+    }
+
     fn known_checks(&mut self) -> Vec<CheckedIndicator> {
-        std::mem::take(&mut self.checks)
+        self.known.checks.take().unwrap_or_default()
     }
 }
