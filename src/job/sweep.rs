@@ -203,6 +203,7 @@ impl Job for SweepJob<'_> {
             known,
             journal: &journal,
             missing: journal.points(),
+            told: None,
             held: Vec::new(),
             source: &source,
         };

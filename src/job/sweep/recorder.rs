@@ -1,5 +1,7 @@
 //! Writes every point as soon as it is done, and tells how far the sweep is.
 
+use std::time::{Duration, Instant};
+
 use crate::continuation::{CheckedIndicator, Observer, Point};
 use crate::job::{Context, Progress};
 use crate::run::{Gathered, JobFolder, Journal, JournalledSource, Manifest, RunError, RunFolder};
@@ -7,6 +9,9 @@ use crate::sweep_file::Sweep;
 
 /// Failures as observers hand them on.
 type Failure = Box<dyn std::error::Error + Send + Sync>;
+
+/// Time between two manifests while points come from shards.
+const BETWEEN_MANIFESTS: Duration = Duration::from_millis(100);
 
 /// What a sweep tells its points.
 pub(super) struct Recorder<'a> {
@@ -22,6 +27,8 @@ pub(super) struct Recorder<'a> {
     /// Points of earlier processes that have not come from the journal yet. Then the tables that are there are
     /// replaced.
     pub(super) missing: usize,
+    /// When the manifest last said how many points are done.
+    pub(super) told: Option<Instant>,
     /// Points that wait for those.
     pub(super) held: Vec<Point>,
 }
@@ -68,7 +75,7 @@ impl Observer for Recorder<'_> {
     fn point(&mut self, point: &Point, done: usize, remaining: usize) -> Result<(), Failure> {
         (self.context.observer)(&Progress::Solved(point));
         let family = self.sweep.problem.family();
-        self.known.holders.keep(self.journal, family, point)?;
+        let is_of_shard = self.known.holders.keep(self.journal, family, point)?;
         if self.source.is_stored(point.value) {
             self.missing = self.missing.saturating_sub(1);
             self.held.push(point.clone());
@@ -85,6 +92,14 @@ impl Observer for Recorder<'_> {
             .add_points(self.sweep.problem.subject(), std::slice::from_ref(point))?;
         self.say(point, done, done + remaining);
         self.manifest.points = done;
+        // Many points that shards have solved come at once: that some of them are told of is enough.
+        let is_soon = self
+            .told
+            .is_some_and(|told| told.elapsed() < BETWEEN_MANIFESTS);
+        if is_of_shard && is_soon {
+            return Ok(());
+        }
+        self.told = Some(Instant::now());
         Ok(self.run.write_progress(&self.manifest)?)
     }
 

@@ -58,7 +58,7 @@ impl Holders {
         journal.write_shards(&self.shards)
     }
 
-    /// Keeps a point in a journal if a shard has solved it.
+    /// Keeps a point in a journal if a shard has solved it, and says whether one has.
     ///
     /// # Errors
     /// [`RunError::Write`].
@@ -67,12 +67,13 @@ impl Holders {
         journal: &Journal,
         family: &Family,
         point: &Point,
-    ) -> Result<(), RunError> {
+    ) -> Result<bool, RunError> {
         let Some(&place) = self.points.get(&point.value.to_bits()) else {
-            return Ok(());
+            return Ok(false);
         };
         let holds = self.shards.get(place).is_some_and(Option::is_some);
-        journal.write_known(family, point, holds.then_some(place))
+        journal.write_known(family, point, holds.then_some(place))?;
+        Ok(true)
     }
 }
 
