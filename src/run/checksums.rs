@@ -288,5 +288,12 @@ mod tests {
             Some((1, Vec::new()))
         );
         assert!(!read(run).unwrap().unwrap().contains_key("figures/mine.svg"));
+        // A checksum that is known is taken, whatever is in the file.
+        let known = Sums::from([("points.csv".to_owned(), sum(b"as it was written"))]);
+        write_knowing(run, ENTRIES, &known).unwrap();
+        let changed = (run.join("points.csv"), Damage::Changed);
+        assert_eq!(check(run, ENTRIES, &[]).unwrap().unwrap().1, [changed]);
+        std::fs::write(run.join("points.csv"), "as it was written").unwrap();
+        assert_eq!(check(run, ENTRIES, &[]).unwrap().unwrap().1, []);
     }
 }

@@ -26,6 +26,10 @@ pub(crate) struct Shards {
     missing: Vec<(Shard, String)>,
 }
 
+/// Shards that are read side by side: their files are read once for the densities, and once for the checksums, from what
+/// the system still has of them in memory then.
+const AT_ONCE: usize = 8;
+
 /// What shards have solved and seen.
 #[derive(Debug, Default)]
 pub(crate) struct Gathered {
@@ -169,18 +173,14 @@ impl Shards {
         let begun =
             |run: &&StoredRun| run.points_done() != Some(0) || run.ending() == Ending::Complete;
         let runs: Vec<&StoredRun> = self.runs.iter().filter(begun).collect();
-        let read = runs.into_par_iter().map(|run| {
-            let mut points = run.points(subject, cells, methods)?;
-            let shard = run.shard().filter(|_| run.ending() == Ending::Complete);
-            let shard = shard.and_then(|shard| HoldingShard::at(run.path(), shard));
-            if shard.is_some() {
-                give_detections(run.path(), &mut points)?;
-            }
-            Ok((shard, points, run.checks(subject)?))
+        let read = runs.chunks(AT_ONCE).flat_map(|some| {
+            let read = some
+                .par_iter()
+                .map(|run| read(run, subject, cells, methods));
+            read.collect::<Vec<_>>()
         });
-        let read: Vec<Result<_, RunError>> = read.collect();
         let mut gathered = Gathered::default();
-        for (place, one) in read.into_iter().enumerate() {
+        for (place, one) in read.enumerate() {
             let (shard, points, seen) = one?;
             let holders = &mut gathered.holders;
             holders.shards.push(shard);
@@ -196,6 +196,29 @@ impl Shards {
         }
         Ok(gathered)
     }
+}
+
+/// What is read of a shard: how it is known again where its densities can be read later, its points, and what was seen
+/// in its checks.
+type Read = (
+    Option<HoldingShard>,
+    Vec<Point>,
+    Option<Vec<CheckedIndicator>>,
+);
+
+fn read(
+    run: &StoredRun,
+    subject: &Subject,
+    cells: (&CellSpace, &[Axis]),
+    methods: &[&'static str],
+) -> Result<Read, RunError> {
+    let mut points = run.points(subject, cells, methods)?;
+    let shard = run.shard().filter(|_| run.ending() == Ending::Complete);
+    let shard = shard.and_then(|shard| HoldingShard::at(run.path(), shard));
+    if shard.is_some() {
+        give_detections(run.path(), &mut points)?;
+    }
+    Ok((shard, points, run.checks(subject)?))
 }
 
 /// Into how many shards the sweep was cut whose shards are there.
