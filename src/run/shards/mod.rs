@@ -26,8 +26,8 @@ pub(crate) struct Shards {
     missing: Vec<(Shard, String)>,
 }
 
-/// Shards that are read side by side: their files are read once for the densities, and once for the checksums, from what
-/// the system still has of them in memory then.
+/// Shards that are read side by side: their files are read once for the densities, and once for the checksums, then
+/// from what the system still has of them in memory.
 const AT_ONCE: usize = 8;
 
 /// What shards have solved and seen.
