@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::distances::fill_all_distances;
+use super::distances::{distance_between, fill_all_distances};
 use super::doubt::{CheckedBy, Doubt};
 use super::grid::{Checked, CheckedIndicator, Checks, FinerZero, Seen, check, known, leak};
 use super::look::{CloserLook, with_looks};
@@ -29,7 +29,7 @@ pub(crate) fn detect_again(
     points
         .par_iter_mut()
         .for_each(|point| point.detect(detector));
-    fill_all_distances(&mut points);
+    fill_all_distances(&mut points, distance_between);
     let span = Span::new(&subject, given);
     let options = &options.goal(span.length());
     let mut repeated = Repeated {

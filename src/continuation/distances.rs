@@ -14,12 +14,16 @@ pub(super) fn distance_between(a: &Point, b: &Point) -> Option<f64> {
 }
 
 /// Fills all distances of ascending points, each from the point with densities before it.
-pub(super) fn fill_all_distances(points: &mut [Point]) {
+/// `distance` gives that of two points.
+pub(super) fn fill_all_distances(
+    points: &mut [Point],
+    distance: impl Fn(&Point, &Point) -> Option<f64> + Sync,
+) {
     let has = |index: &usize| !points[*index].densities.is_empty();
     let solved: Vec<usize> = (0..points.len()).filter(has).collect();
     let pairs = solved.par_windows(2);
     let distances: Vec<Option<f64>> = pairs
-        .map(|pair| distance_between(&points[pair[0]], &points[pair[1]]))
+        .map(|pair| distance(&points[pair[0]], &points[pair[1]]))
         .collect();
     points.iter_mut().for_each(|point| point.distance = None);
     for (&place, distance) in solved.iter().skip(1).zip(distances) {

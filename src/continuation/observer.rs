@@ -31,6 +31,13 @@ pub trait Observer: Send {
         let _ = stretch;
     }
 
+    /// Points of the same sweep that are solved already, by its shards for example: asked for once, before the first
+    /// value is solved. They are taken as they are and not solved again, and what they say was detected is not detected
+    /// again.
+    fn known_points(&mut self) -> Vec<Point> {
+        Vec::new()
+    }
+
     /// What earlier checks of the same sweep saw, those of its shards for example: asked for once, before the first
     /// value is checked. It is taken for seen, not solved again.
     fn known_checks(&mut self) -> Vec<CheckedIndicator> {

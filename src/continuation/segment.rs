@@ -6,8 +6,8 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use super::dips::Flanks;
-use super::distances::distance_between;
+use super::known_points::KnownPoints;
+use super::solved_point::SolvedPoint;
 use super::{DensitySource, Observer, Point, Session, SourceError, SweepError};
 use crate::cancellation::Cancellation;
 use crate::topology::Detector;
@@ -29,6 +29,8 @@ pub(super) struct Work<'a> {
     ended: AtomicBool,
     /// Whether it is of no use without all of its values.
     needs_all: bool,
+    /// What is not to be solved again.
+    known: KnownPoints,
 }
 
 /// Whom points are told.
@@ -37,15 +39,6 @@ struct Listener<'a> {
     done: usize,
     /// Given values that are not done.
     remaining: usize,
-}
-
-/// A point with the flanks of its densities.
-pub(super) struct SolvedPoint {
-    pub(super) point: Point,
-    /// Those whose sign is sure.
-    pub(super) flanks: Flanks,
-    /// Places of the observables of which one is not.
-    pub(super) unsure: Vec<usize>,
 }
 
 impl<'a> Work<'a> {
@@ -69,7 +62,13 @@ impl<'a> Work<'a> {
             }),
             ended: AtomicBool::new(false),
             needs_all: false,
+            known: KnownPoints::default(),
         }
+    }
+
+    /// The same where some points are known.
+    pub(super) fn knowing(self, known: KnownPoints) -> Self {
+        Self { known, ..self }
     }
 
     /// The same, ended by the first value that has no steady state.
@@ -111,6 +110,11 @@ impl<'a> Work<'a> {
         if self.ends() {
             return Ok(None);
         }
+        if let Some(mut known) = self.known.take(value) {
+            known.point.distance = self.distance_to(before, &known.point);
+            self.tell(&known.point, is_given)?;
+            return Ok(Some(known));
+        }
         let method = self.source.method();
         let Some((mut point, refusal)) = Point::solve(session, method, self.detector, value) else {
             self.ended.store(true, Ordering::Relaxed);
@@ -125,24 +129,24 @@ impl<'a> Work<'a> {
                 source: SourceError::Method(error),
             });
         }
-        let below = before.filter(|before| before.value < value);
-        point.distance = below.and_then(|below| distance_between(below, &point));
+        point.distance = self.distance_to(before, &point);
         if self.needs_all && !point.report.status.is_resolved() {
             self.ended.store(true, Ordering::Relaxed);
         }
-        let found = point.densities.iter().zip(&point.detections);
-        let flanks = found.map(|(density, detected)| self.detector.flanks(density, detected));
-        let (flanks, unsure): (Flanks, Flanks) = flanks
-            .map(|all| all.into_iter().partition(|one| one.is_sure))
-            .unzip();
-        let unsure = (0..unsure.len()).filter(|&place| !unsure[place].is_empty());
-        let unsure = unsure.collect();
-        self.tell(&point, is_given)?;
-        Ok(Some(SolvedPoint {
-            point,
-            flanks,
-            unsure,
-        }))
+        let solved = SolvedPoint::new(point, self.detector);
+        self.tell(&solved.point, is_given)?;
+        Ok(Some(solved))
+    }
+
+    /// Largest Hellinger distance over the watched densities of two points; `None` when one has none.
+    pub(super) fn distance_between(&self, a: &Point, b: &Point) -> Option<f64> {
+        self.known.distance_between(a, b)
+    }
+
+    /// The same to a neighbour, where that is below.
+    fn distance_to(&self, before: Option<&Point>, point: &Point) -> Option<f64> {
+        let below = before.filter(|before| before.value < point.value);
+        below.and_then(|below| self.distance_between(below, point))
     }
 
     /// Tells the observer of a stretch that is swept again on finer cells.
@@ -267,7 +271,7 @@ fn between(
     [a, b]: [&Point; 2],
     halvings: usize,
 ) -> Result<Vec<SolvedPoint>, SweepError> {
-    let distance = distance_between(a, b).unwrap_or(0.0);
+    let distance = work.distance_between(a, b).unwrap_or(0.0);
     let middle = 0.5 * (a.value + b.value);
     let is_wide = distance > work.largest_distance && middle != a.value && middle != b.value;
     if halvings == 0 || !is_wide {

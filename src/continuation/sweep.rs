@@ -2,6 +2,7 @@
 //! leave them in doubt. What does not depend on each other is solved side by side.
 
 use super::closer::Closer;
+use super::known_points::KnownPoints;
 use super::segment::Work;
 use super::span::{Span, evenly_spaced};
 use super::walk::Walk;
@@ -51,6 +52,7 @@ pub(crate) fn sweep_shard(
     let values = &given[places];
     observer.begin(values.len());
     let known = observer.known_checks();
+    let points_known = KnownPoints::new(observer.known_points(), detector, values, cancellation);
     let options = options.goal(span.length());
     let work = Work::new(
         (source, detector),
@@ -59,7 +61,8 @@ pub(crate) fn sweep_shard(
         options.largest_distance,
         // Where it is not the first of the sweep, the first value may fail.
         values.first().copied().filter(|_| shard.number() == 1),
-    );
+    )
+    .knowing(points_known);
     let walk = Walk::along(&work, (values, usize::MAX), (span, options.clone()))?;
     let (labels, checks, mut unchecked) = walk.labels(cancellation, known);
     // What lies about the ends of a shard is known to the whole sweep alone.

@@ -1,5 +1,7 @@
 //! The sweep driver on sources whose answers are known in closed form.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use super::*;
 use crate::cancellation::Cancellation;
 use crate::density::{Density, EstimatedDensity, Observable};
@@ -260,6 +262,84 @@ fn an_interruption_keeps_the_points_so_far() {
     .unwrap();
     assert!(result.interrupted);
     assert_eq!(result.points.len(), 7);
+}
+
+#[test]
+fn known_points_are_not_solved_again_detected_in_once_and_change_nothing() {
+    struct Knowing(Vec<Point>);
+    impl Observer for Knowing {
+        fn known_points(&mut self) -> Vec<Point> {
+            std::mem::take(&mut self.0)
+        }
+    }
+    /// Counts the densities in which is detected.
+    struct Counting(SquareLaw, AtomicUsize);
+    impl Detector for Counting {
+        fn name(&self) -> &'static str {
+            self.0.name()
+        }
+        fn detect(&self, density: &EstimatedDensity) -> Detection {
+            self.1.fetch_add(1, Ordering::Relaxed);
+            self.0.detect(density)
+        }
+    }
+    let found = |source: &Ramp, known: Vec<Point>| {
+        let options = LocateOptions {
+            largest_distance: 2e-3,
+            tolerance: Some(1e-3),
+            ..LocateOptions::default()
+        };
+        let law = SquareLaw {
+            birth: 0.1,
+            noise: 1e-6,
+        };
+        let seen = known
+            .iter()
+            .filter(|one| !one.detections.is_empty())
+            .count();
+        let (detector, mut observer) = (Counting(law, AtomicUsize::new(0)), Knowing(known));
+        let never = Cancellation::new();
+        let result = sweep(source, &detector, 41, &options, &never, &mut observer).unwrap();
+        assert_eq!(detector.1.into_inner() + seen, result.points.len());
+        let points = result.points.iter();
+        let table: Vec<(f64, Option<f64>)> = points.map(|one| (one.value, one.distance)).collect();
+        (table, format!("{:?}", result.labels), result.points)
+    };
+    for (from, to, segments) in [(-1.0, 1.0, 1), (1.0, -1.0, 1), (-1.0, 1.0, 3)] {
+        let source = Ramp {
+            segments,
+            ..Ramp::new(from, to)
+        };
+        let whole = found(&source, Vec::new());
+        assert!(whole.2.len() > 2 * 41);
+        let known = |is_known: fn(usize) -> bool| {
+            let points = whole.2.iter().cloned().enumerate();
+            let mut known: Vec<Point> = points
+                .filter(|(place, _)| is_known(*place))
+                .map(|(place, point)| Point {
+                    // Of every other one it is known what was detected.
+                    detections: match place % 2 {
+                        0 => Vec::new(),
+                        _ => point.detections,
+                    },
+                    distance: None,
+                    ..point
+                })
+                .collect();
+            known.reverse();
+            known
+        };
+        // Some of them, and all: then a source that refuses every value is not asked.
+        let refusing = Ramp {
+            refused: Some((-2.0, 2.0)),
+            ..source.clone()
+        };
+        let some = found(&source, known(|place| place % 3 != 1));
+        let all = found(&refusing, known(|_| true));
+        for again in [some, all] {
+            assert_eq!((&again.0, &again.1), (&whole.0, &whole.1));
+        }
+    }
 }
 
 #[test]

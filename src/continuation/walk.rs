@@ -10,7 +10,8 @@ use super::grid::CheckedIndicator;
 use super::levels::asked_of;
 use super::live::Live;
 use super::locate::label_points;
-use super::segment::{Segment, SolvedPoint, Work};
+use super::segment::{Segment, Work};
+use super::solved_point::SolvedPoint;
 use super::span::Span;
 use super::wanted::Search;
 use super::{CellCheck, DensitySource, Goal, Label, Point, SweepError};
@@ -91,7 +92,8 @@ impl<'a> Walk<'a> {
             self.points.push(one.point);
             self.flanks.push(one.flanks);
         }
-        fill_all_distances(&mut self.points);
+        let work = self.work;
+        fill_all_distances(&mut self.points, |a, b| work.distance_between(a, b));
         self.follow_across_borders()
     }
 

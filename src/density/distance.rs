@@ -2,6 +2,7 @@
 
 use super::projection::check_length;
 use super::{Density, DensityError};
+use crate::space::Axis;
 
 /// Hellinger distance √(½ Σ (√p - √q)²) of two densities, 0 to 1. Negative values count as zero, and what is left is
 /// normalised again.
@@ -77,23 +78,22 @@ fn half_sum(first: &[f64], second: &[f64]) -> f64 {
 
 /// Masses of two densities on the same cells.
 fn common_masses(first: &Density, second: &Density) -> Result<(Vec<f64>, Vec<f64>), DensityError> {
-    let edges = |density: &Density| -> Vec<Vec<f64>> {
-        let axes = density.axes.iter();
-        axes.map(|axis| axis.edges().to_vec()).collect()
-    };
-    if edges(first) != edges(second) {
+    let [one, other] = [first, second].map(|density| density.axes.iter().map(Axis::edges));
+    if !one.eq(other) {
         return Err(DensityError::DifferentAxes);
     }
     let volumes = first.volumes();
-    check_length(&first.values, volumes.len())?;
-    check_length(&second.values, volumes.len())?;
-    Ok((first.masses(), second.masses()))
+    let masses = |density: &Density| {
+        check_length(&density.values, volumes.len())?;
+        let cells = density.values.iter().zip(&volumes);
+        Ok(cells.map(|(value, volume)| value * volume).collect())
+    };
+    Ok((masses(first)?, masses(second)?))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::space::Axis;
     use statrs::function::erf::erfc;
 
     fn gaussian(mean: f64, count: usize) -> Density {

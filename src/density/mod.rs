@@ -116,8 +116,12 @@ impl Density {
 fn cell_volumes(axes: &[Axis]) -> Vec<f64> {
     let mut volumes = vec![1.0];
     for axis in axes {
-        let widths = |volume: f64| (0..axis.count()).map(move |cell| volume * axis.width(cell));
-        volumes = volumes.into_iter().flat_map(widths).collect();
+        let widths: Vec<f64> = (0..axis.count()).map(|cell| axis.width(cell)).collect();
+        let mut longer = Vec::with_capacity(volumes.len() * widths.len());
+        for volume in volumes {
+            longer.extend(widths.iter().map(|width| volume * width));
+        }
+        volumes = longer;
     }
     volumes
 }

@@ -101,7 +101,7 @@ impl<'a> SweepJob<'a> {
     fn detect_again(&self, gathered: Gathered) -> SweepResult {
         let sweep = self.sweep;
         let swept = (sweep.problem.subject().clone(), sweep.settings.points);
-        let Gathered { points, checks } = gathered;
+        let Gathered { points, checks, .. } = gathered;
         let (detector, locate) = (sweep.detector(), &sweep.settings.locate);
         let mut result = detect_again(swept, &detector, points, (checks, Vec::new()), locate);
         result.interrupted = true;
@@ -191,16 +191,19 @@ impl Job for SweepJob<'_> {
             _ => None,
         };
         let is_merged = merged.is_some();
-        let Gathered { points, checks } = merged.unwrap_or_default();
-        let source = JournalledSource::of_sweep(source, &journal, points);
+        let known = merged.unwrap_or_default();
+        known.holders.tell(&journal)?;
+        let source = JournalledSource::of_sweep(source, &journal);
         let mut recorder = Recorder {
             sweep: self.sweep,
             folder,
             run,
             manifest,
             context,
-            checks: checks.unwrap_or_default(),
+            known,
+            journal: &journal,
             missing: journal.points(),
+            told: None,
             held: Vec::new(),
             source: &source,
         };
@@ -263,8 +266,15 @@ impl Job for SweepJob<'_> {
     fn write(&mut self, found: &SweepResult, folder: &JobFolder, _: f64) -> Result<(), RunError> {
         folder.check()?;
         let has_time = self.has_time(found);
+        let is_shard = self.number().is_some() && !found.interrupted;
         match &mut self.begun {
-            Some((run, _)) if has_time => run.finish(found, &self.sweep.to_toml()),
+            Some((run, _)) if has_time => {
+                folder.add_sums(run.finish(found, &self.sweep.to_toml())?);
+                if is_shard {
+                    folder.add_sums(run.write_detections(&found.points)?);
+                }
+                Ok(())
+            }
             Some((run, _)) => run.break_off(found, &self.sweep.to_toml()),
             None => Ok(()),
         }

@@ -185,6 +185,12 @@ pub enum RunError {
         /// The folder.
         path: PathBuf,
     },
+    /// A shard whose densities an unfinished run was made of, and which is not there as it was.
+    #[error("densities of this unfinished run are in the shard {}, which is gone or was computed anew", path.display())]
+    ShardGone {
+        /// Where the shard was.
+        path: PathBuf,
+    },
     /// A folder without a manifest.
     #[error("`{}` is not the folder of a run: it has no run.json", path.display())]
     NotARun {

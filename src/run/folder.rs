@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use super::atomic::{sync_all, write_atomically, write_durably};
+use super::checksums::Sums;
 use super::growing::GrowingTable;
+use super::kept_detections::write_detections;
 use super::looks::looks_file;
 use super::spectra::fluctuation_files;
 use super::store::write_store;
@@ -130,7 +132,8 @@ impl RunFolder {
     }
 
     /// Writes all files of a finished sweep, its densities among them, which are brought to the disk while the caller
-    /// goes on, to the figures for example, until the manifest is written.
+    /// goes on, to the figures for example, until the manifest is written. Returns the checksums of the files of the
+    /// store by their names in the folder.
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
@@ -138,26 +141,37 @@ impl RunFolder {
         &mut self,
         result: &SweepResult,
         sweep_file: &str,
-    ) -> Result<(), RunError> {
+    ) -> Result<Sums, RunError> {
         self.break_off(result, sweep_file)?;
-        self.settling = Some(Settling::begin(write_densities(&self.path, result)?)).into();
-        Ok(())
+        let sums = write_densities(&self.path, result)?;
+        self.settling = Some(Settling::begin(self.path.join(STORE))).into();
+        Ok(sums)
+    }
+
+    /// Writes what a complete shard has detected, for the merge, and returns the checksum of the file by its name.
+    ///
+    /// # Errors
+    /// [`RunError::Write`].
+    pub(crate) fn write_detections(&self, points: &[Point]) -> Result<Sums, RunError> {
+        write_detections(&self.path, points)
     }
 }
 
-/// Writes all densities of a sweep into a folder and returns where they are.
+/// Writes all densities of a sweep into a folder and returns the checksums of their files by their names in it.
 ///
 /// # Errors
 /// [`RunError::Write`].
-pub(super) fn write_densities(run: &Path, result: &SweepResult) -> Result<PathBuf, RunError> {
-    let path = run.join(STORE);
+pub(super) fn write_densities(run: &Path, result: &SweepResult) -> Result<Sums, RunError> {
     let solved = result
         .points
         .iter()
         .filter(|point| !point.densities.is_empty());
     let stored = solved.map(|point| (point.value, &point.densities[..], &point.report.fields[..]));
-    write_store(&path, &result.subject.family, &stored.collect::<Vec<_>>())?;
-    Ok(path)
+    let (path, stored) = (run.join(STORE), stored.collect::<Vec<_>>());
+    let sums = write_store(&path, &result.subject.family, &stored)?.into_iter();
+    Ok(sums
+        .map(|(name, sum)| (format!("{STORE}/{name}"), sum))
+        .collect())
 }
 
 /// The files of a sweep by their names, but for its manifest and its densities.

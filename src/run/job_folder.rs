@@ -1,9 +1,10 @@
 //! The folder of a job: which files it leaves there, how it begins and goes on, and how what it made takes its place.
 
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::atomic::{sync_all, write_below};
-use super::checksums::Checked;
+use super::checksums::{Checked, Sums};
 use super::lock::FolderLock;
 use super::place::{self, FIGURES, folder_in};
 use super::placing::{clear_unfinished, finish_after_kill};
@@ -47,6 +48,8 @@ pub struct JobFolder {
     layout: Layout,
     place: Destination,
     kept: Option<PathBuf>,
+    /// Checksums of files that whoever wrote them has told.
+    sums: Mutex<Sums>,
 }
 
 /// Where files are written to.
@@ -100,12 +103,23 @@ impl JobFolder {
             layout,
             place,
             kept,
+            sums: Mutex::default(),
         })
     }
 
     /// Where an earlier run is kept that was in the place of files that grow.
     pub(crate) fn kept(&self) -> Option<&Path> {
         self.kept.as_deref()
+    }
+
+    /// Takes checksums of files, by their names in the folder, from whoever wrote them: they are not read again.
+    pub(crate) fn add_sums(&self, sums: Sums) {
+        self.lock_sums().extend(sums);
+    }
+
+    /// A poisoned lock holds checksums as whole as any other.
+    fn lock_sums(&self) -> MutexGuard<'_, Sums> {
+        self.sums.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Where the files are to stand.
@@ -192,10 +206,11 @@ impl JobFolder {
     pub(crate) fn close(self, ending: Ending) -> Result<Vec<PathBuf>, RunError> {
         self.check()?;
         let (part, path) = (self.part(), self.path());
+        let known = std::mem::take(&mut *self.lock_sums());
         let files = match self.place {
             Destination::Beside(staging) => {
                 if self.layout.entries.contains(&checksums::NAME) {
-                    checksums::write(&path, self.layout.entries)?;
+                    checksums::write_knowing(&path, self.layout.entries, &known)?;
                 }
                 sync_all(&[path])?;
                 let done = match ending {
@@ -206,7 +221,7 @@ impl JobFolder {
             }
             Destination::There { .. } => {
                 research_object::write(&path)?;
-                checksums::write(&path, self.layout.entries)?;
+                checksums::write_knowing(&path, self.layout.entries, &known)?;
                 Vec::new()
             }
         };

@@ -7,8 +7,8 @@ use super::journal::differences;
 use super::place::read_text;
 use super::placing::finish_after_kill;
 use super::{
-    RunError, checksums, curve, journal, levels_table, looks, plane_file, research_object,
-    stability,
+    RunError, checksums, curve, journal, kept_detections, levels_table, looks, plane_file,
+    research_object, stability,
 };
 
 /// What a kind of job leaves in its folder.
@@ -44,6 +44,7 @@ impl Layout {
             "densities.zarr.old",
             "checks.csv",
             looks::NAME,
+            kept_detections::NAME,
             "spectra.csv",
             "correlations.csv",
             "figures",

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::journal::differences;
 use super::place::read_text;
-use super::shards::{count, shard_folder};
+use super::place::shard_folder;
+use super::shards::count;
 use super::{Layout, RunError, checksums};
 use crate::continuation::Shard;
 use crate::continuation::map::{MapChange, MapNode, MapShard};

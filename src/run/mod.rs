@@ -38,9 +38,13 @@
 //! were. A shard leaves nodes and changes all the same: its journal would have to be kept for weeks, and the merge
 //! could not use it, since a node that is reached along another path of its plane differs by rounding.
 //!
-//! **Shards are the same sweep over a source that knows more.** A shard runs `sweep_shard` over its values and is a run
-//! like any other. The merge runs the whole sweep over a `run::JournalledSource` that knows the shards' points: it
-//! gives what they have solved and solves what they have not, so there is no second way to locate anything.
+//! **Shards are the same sweep by an observer that knows more.** A shard runs `sweep_shard` over its values and is a
+//! run like any other. The merge runs the whole sweep, whose observer knows the shards' points
+//! (`continuation::Observer::known_points`): they are taken for solved, what is between them is solved, and there is
+//! no second way to locate anything. A point comes with what its shard has detected (`run::kept_detections`), which is
+//! used where the same build detects on the same instruction sets, since any other may differ in the last digits. The
+//! journal of a merge names the shard that holds the densities of a point (`run::holding_shard`, by the SHA-256 of the
+//! shard's checksums) in place of the densities, which would be written once more for a merge that is killed.
 //!
 //! **Detection is repeated from what is stored.** `run` reads a folder back to the same points bit for bit,
 //! `continuation::detect_again` does what a sweep does after its last solve. What the finer grid showed is stored as
@@ -68,8 +72,10 @@ mod features_table;
 mod findings;
 mod folder;
 mod growing;
+mod holding_shard;
 mod job_folder;
 mod journal;
+mod kept_detections;
 mod latex;
 mod layout;
 mod levels_table;
@@ -143,13 +149,13 @@ pub use names::check_names;
 pub(crate) use names::check_names_compared;
 pub(crate) use number::{format_number, format_with_error};
 
+pub(crate) use place::shard_folder;
 pub use plane_file::{StoredPlane, StoredPlaneContent};
 pub(crate) use points_table::points_csv;
 pub(crate) use provenance::Provenance;
 pub use sentences::finding_in_words;
 #[cfg(feature = "cli")]
 pub(crate) use sentences::fixed_point_in_words;
-pub(crate) use shards::shard_folder;
 pub(crate) use shards::{Gathered, Shards};
 pub(crate) use staged::StagedRun;
 pub use stored_run::StoredRun;

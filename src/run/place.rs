@@ -4,6 +4,16 @@ use std::io;
 use std::path::{Component, Path, PathBuf};
 
 use super::RunError;
+use crate::continuation::Shard;
+
+/// The folder of all shards in that of a run.
+pub(super) const SHARDS: &str = "shards";
+
+/// Where a shard of the run in `folder` stands.
+pub(crate) fn shard_folder(folder: &Path, shard: Shard) -> PathBuf {
+    let name = format!("{}-of-{}", shard.number(), shard.of());
+    folder.join(SHARDS).join(name)
+}
 
 /// Reads a file, whatever links lead to it. What is none is refused: a pipe would be waited for without end.
 pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {

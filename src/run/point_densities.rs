@@ -2,12 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
+use super::holding_shard::HoldingShard;
+use super::journal::Held;
 use super::stored_densities::StoredDensities;
 use super::stored_fields::StoredFields;
 use super::{Journal, RunError};
 use crate::continuation::{Point, Subject};
 use crate::space::{Axis, CellSpace};
 use crate::sweep_file::{bytes_in_words, has_room};
+
+/// Name of a store.
+const STORE: &str = "densities.zarr";
 
 /// No density is as large: its square is still a number.
 const LARGEST: f64 = 1e150;
@@ -22,6 +27,8 @@ pub(super) struct PointDensities<'a> {
     subject: &'a Subject,
     cells: (&'a CellSpace, &'a [Axis]),
     journal: Option<Journal>,
+    /// Stores of the shards in which the journal says that densities are.
+    shards: Vec<Option<StoredDensities>>,
     store: Option<StoredDensities>,
     fields: Option<StoredFields>,
     /// What is opened.
@@ -39,12 +46,21 @@ impl<'a> PointDensities<'a> {
         subject: &'a Subject,
         cells: (&'a CellSpace, &'a [Axis]),
     ) -> Result<Self, RunError> {
-        let path = run.join("densities.zarr");
+        let path = run.join(STORE);
         let journal = if is_complete {
             None
         } else {
             Journal::look(run)?
         };
+        let mut shards = Vec::new();
+        if let Some(journal) = &journal {
+            for shard in journal.shards::<Option<HoldingShard>>()? {
+                let found = shard.map(|shard| shard.find(run)).transpose()?;
+                let store = found.map(|shard| shard.join(STORE));
+                let store = store.map(|store| StoredDensities::open(&store, subject, cells));
+                shards.push(store.transpose()?);
+            }
+        }
         // Unfinished runs of early versions have a store that grew.
         let store = if journal.is_none() || path.join("zarr.json").is_file() {
             Some(StoredDensities::open(&path, subject, cells)?)
@@ -63,6 +79,7 @@ impl<'a> PointDensities<'a> {
             subject,
             cells,
             journal,
+            shards,
             store,
             fields,
             path,
@@ -94,7 +111,15 @@ impl<'a> PointDensities<'a> {
         let value = point.value;
         let mut found = None;
         if let Some(journal) = &self.journal {
-            found = journal.densities(self.subject, self.cells, value)?;
+            let held = journal.densities(self.subject, self.cells, value)?;
+            found = match held {
+                None => None,
+                Some(Held::Here(densities)) => Some(densities),
+                Some(Held::In(shard)) => match self.shards.get(shard) {
+                    Some(Some(store)) => store.at(value)?,
+                    _ => None,
+                },
+            };
         }
         if let (None, Some(store)) = (&found, &self.store) {
             found = store.at(value)?;

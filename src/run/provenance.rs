@@ -55,6 +55,22 @@ impl Provenance {
         }
     }
 
+    /// All on which the last digits of a result depend beside what was computed: the program, how it was compiled, and
+    /// the instruction sets of this processor. Of a program that no commit tells, its file stands for it.
+    pub(crate) fn of_arithmetic() -> String {
+        let made = Self::of_this_process();
+        let is_known = |commit: &&str| !commit.ends_with("-dirty");
+        let file = match made.commit.filter(is_known) {
+            Some(_) => None,
+            None => std::env::current_exe().and_then(std::fs::metadata).ok(),
+        };
+        let file = file.map(|file| (file.len(), file.modified().ok()));
+        let program = (env!("CARGO_PKG_VERSION"), made.commit, file);
+        let compiled = (made.compiler, made.target, made.target_features);
+        let machine = (made.optimisation, made.architecture, made.instruction_sets);
+        format!("{program:?} {compiled:?} {machine:?}")
+    }
+
     /// Now it has ended.
     pub(crate) fn end(&mut self) {
         self.ended = Some(date_in_utc(SystemTime::now()));
@@ -87,6 +103,13 @@ fn instruction_sets() -> Vec<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_process_computes_in_one_way() {
+        let words = Provenance::of_arithmetic();
+        assert_eq!(words, Provenance::of_arithmetic());
+        assert!(words.contains(env!("CARGO_PKG_VERSION")), "{words}");
+    }
 
     #[test]
     fn the_build_says_by_what_it_was_made() {

@@ -7,16 +7,16 @@
 //! values: damage to a file then costs one value, and what has no numbers takes no room. Else it is one file, or a few
 //! large ones.
 
-use std::borrow::Cow;
 use std::path::Path;
 
 use rayon::prelude::*;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, json};
 
 use super::RunError;
 use super::arrays::{DensityPart, Layout};
+use super::checksums::Sums;
 use super::tree::rename;
-use super::zarr::{self, Chunks, Row};
+use super::zarr::{self, Chunks, Part, Row, Written};
 use crate::UNFINISHED;
 use crate::continuation::StateField;
 use crate::density::{EstimatedDensity, Variants};
@@ -27,7 +27,7 @@ use crate::system::Family;
 pub(super) type StoredPoint<'a> = (f64, &'a [EstimatedDensity], &'a [StateField]);
 
 /// Writes the densities at values of the parameter in their order, in the place of a store that is there; nothing where
-/// there are none.
+/// there are none. Returns the checksums of its files by their names in it.
 ///
 /// # Errors
 /// [`RunError::Write`].
@@ -35,9 +35,9 @@ pub(super) fn write_store(
     path: &Path,
     family: &Family,
     points: &[StoredPoint<'_>],
-) -> Result<(), RunError> {
+) -> Result<Sums, RunError> {
     if points.is_empty() {
-        return Ok(());
+        return Ok(Sums::new());
     }
     let failed = RunError::writing(path);
     let home = path.parent().unwrap_or(Path::new("."));
@@ -49,12 +49,13 @@ pub(super) fn write_store(
         store.add(family, (index, *value), densities);
         store.add_fields(family, index, fields);
     }
-    store.write(family, &fresh).map_err(failed)?;
+    let sums = store.write(family, &fresh).map_err(failed)?;
     // What stands there is of an unfinished run, whose journal holds the same densities.
     if path.exists() {
         std::fs::remove_dir_all(path).map_err(failed)?;
     }
-    rename(&fresh, path)
+    rename(&fresh, path)?;
+    Ok(sums)
 }
 
 /// Values of a density, counted over all arrays, up to which each is a file: a run then has no more than about 60
@@ -105,20 +106,20 @@ impl<'a> Store<'a> {
             }
             let both = [&field.values, &field.errors];
             for (layout, numbers) in Layout::field(family, field).into_iter().zip(both) {
-                self.put(layout, index, vec![Cow::Borrowed(numbers)]);
+                self.put(layout, index, vec![Part::Known(numbers)]);
             }
         }
     }
 
     fn add_estimate(&mut self, family: &Family, index: usize, estimate: &'a EstimatedDensity) {
-        let whole = |values: &'a [f64]| vec![Cow::Borrowed(values)];
+        let whole = |values: &'a [f64]| vec![Part::Known(values)];
         let values = whole(&estimate.density.values);
         self.put(
             Layout::part(DensityPart::Density, family, estimate),
             index,
             values,
         );
-        let errors = vec![Cow::Owned(estimate.stated_errors())];
+        let errors = vec![Part::Later(Box::new(|| estimate.stated_errors()))];
         self.put(
             Layout::part(DensityPart::Error, family, estimate),
             index,
@@ -160,7 +161,7 @@ impl<'a> Store<'a> {
             }
             Variants::Jackknife(replicates) => {
                 let layout = Layout::part(DensityPart::Replicates, family, estimate);
-                let parts = replicates.iter().map(|one| Cow::Borrowed(&one[..]));
+                let parts = replicates.iter().map(|one| Part::Known(one));
                 self.put(layout, index, parts.collect());
             }
         }
@@ -199,12 +200,12 @@ impl<'a> Store<'a> {
         for (length, other) in kept.dimensions.iter_mut().zip(&layout.dimensions) {
             length.1 = length.1.max(other.1);
         }
-        rows.resize(index, Vec::new());
+        rows.resize_with(index, Vec::new);
         rows.push(row);
     }
 
     /// Writes all arrays, and what readers need not look for then: the metadata of all of them in one place.
-    fn write(mut self, family: &Family, folder: &Path) -> std::io::Result<()> {
+    fn write(mut self, family: &Family, folder: &Path) -> std::io::Result<Sums> {
         let values = self.arrays.first().map_or(0, |(_, rows)| rows.len());
         let filled = |rows: &[Row<'_>]| rows.iter().filter(|row| !row.is_empty()).count();
         let of_densities = |layout: &Layout| layout.is_along(family) && layout.dimensions.len() > 1;
@@ -216,7 +217,7 @@ impl<'a> Store<'a> {
         let written = self.arrays.par_iter_mut().map(|(layout, rows)| {
             let number = filled(rows);
             if layout.is_along(family) {
-                rows.resize(values, Vec::new());
+                rows.resize_with(values, Vec::new);
             }
             let is_sparse = number <= FEW_VALUES && number < rows.len();
             let chunks = if of_densities(layout) && (is_small || is_sparse) {
@@ -227,11 +228,16 @@ impl<'a> Store<'a> {
             layout.dimensions[0].1 = rows.len() as u64;
             let folder = folder.join(&layout.name);
             let (dimensions, attributes) = (&layout.dimensions, &layout.attributes);
-            let about = zarr::write(&folder, dimensions, attributes, (rows, chunks))?;
-            Ok((layout.name.clone(), about))
+            let written = zarr::write(&folder, dimensions, attributes, (rows, chunks))?;
+            Ok((layout.name.clone(), written))
         });
-        let metadata: std::io::Result<Vec<(String, Value)>> = written.collect();
-        let metadata: Map<String, Value> = metadata?.into_iter().collect();
+        let written: std::io::Result<Vec<(String, Written)>> = written.collect();
+        let (mut metadata, mut sums) = (Map::new(), Sums::new());
+        for (array, written) in written? {
+            let of_array = written.sums.into_iter();
+            sums.extend(of_array.map(|(name, sum)| (format!("{array}/{name}"), sum)));
+            metadata.insert(array, written.about);
+        }
         let root = json!({
             "zarr_format": 3,
             "node_type": "group",
@@ -242,6 +248,7 @@ impl<'a> Store<'a> {
                 "metadata": metadata,
             },
         });
-        zarr::write_metadata(folder, &root)
+        sums.extend([zarr::write_metadata(folder, &root)?]);
+        Ok(sums)
     }
 }

@@ -13,7 +13,9 @@ use super::point_densities::PointDensities;
 use super::points_table::read_points;
 use super::sealing::seal_after_kill;
 use super::spectra::{CORRELATIONS, SPECTRA, read_fluctuations};
-use super::{Checked, Ending, Layout, PhaseSeconds, RunError, checksums, journal, looks};
+use super::{
+    Checked, Ending, Layout, PhaseSeconds, RunError, checksums, journal, kept_detections, looks,
+};
 use crate::continuation::measure::{MEAN, VELOCITY};
 use crate::continuation::{CheckedIndicator, Point, Shard, Subject};
 use crate::space::{Axis, CellSpace};
@@ -266,6 +268,7 @@ impl StoredRun {
             "points.csv",
             "checks.csv",
             looks::NAME,
+            kept_detections::NAME,
             SPECTRA,
             CORRELATIONS,
             "densities.zarr",

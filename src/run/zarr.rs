@@ -4,16 +4,21 @@
 //! Chunks divide the first dimension: into single indices, of which those without numbers have no chunk, or into a few
 //! long parts. Those of early versions may divide the second dimension too. NaN stands for what no chunk holds.
 
-use std::borrow::Cow;
 use std::fs::File;
 use std::io::{Error, ErrorKind, Read as _, Result, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
+use super::checksums::{self, Sums};
+
 /// Bytes of a chunk, at most: that of one index may be larger.
 const LARGEST_CHUNK: u64 = 1 << 25;
+
+/// The file of metadata.
+const METADATA: &str = "zarr.json";
 
 /// Bytes of a number.
 const NUMBER: u64 = 8;
@@ -41,7 +46,51 @@ fn codecs() -> Value {
 }
 
 /// The numbers of an array at one index of the first dimension, in parts; what they do not fill is NaN.
-pub(super) type Row<'a> = Vec<Cow<'a, [f64]>>;
+pub(super) type Row<'a> = Vec<Part<'a>>;
+
+/// Numbers that are written one after the other.
+pub(super) enum Part<'a> {
+    /// Those that somebody has.
+    Known(&'a [f64]),
+    /// Those that were made to be written.
+    Made(Vec<f64>),
+    /// Those that are made when they are written, since all of them at once would fill the memory.
+    Later(Box<dyn Fn() -> Vec<f64> + Send + Sync + 'a>),
+}
+
+impl From<Vec<f64>> for Part<'_> {
+    fn from(numbers: Vec<f64>) -> Self {
+        Self::Made(numbers)
+    }
+}
+
+impl Part<'_> {
+    fn add_to(&self, bytes: &mut Vec<u8>) {
+        match self {
+            Self::Known(numbers) => add(numbers, bytes),
+            Self::Made(numbers) => add(numbers, bytes),
+            Self::Later(make) => add(&make(), bytes),
+        }
+    }
+}
+
+/// Adds numbers as bytes.
+fn add(numbers: &[f64], bytes: &mut Vec<u8>) {
+    let start = bytes.len();
+    bytes.resize(start + numbers.len() * NUMBER as usize, 0);
+    let (places, _) = bytes[start..].as_chunks_mut();
+    for (place, number) in places.iter_mut().zip(numbers) {
+        *place = number.to_le_bytes();
+    }
+}
+
+/// What was written of an array.
+pub(super) struct Written {
+    /// Its metadata.
+    pub(super) about: Value,
+    /// Checksums of its files, by their names in its folder.
+    pub(super) sums: Sums,
+}
 
 /// How an array is divided into chunks along its first dimension.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,7 +101,7 @@ pub(super) enum Chunks {
     EachIndex,
 }
 
-/// Writes an array with named dimensions into the folder `folder`, which is made, and returns its metadata.
+/// Writes an array with named dimensions into the folder `folder`, which is made: its chunks side by side.
 ///
 /// # Errors
 /// Whatever the system says.
@@ -61,7 +110,7 @@ pub(super) fn write(
     dimensions: &[(String, u64)],
     attributes: &Map<String, Value>,
     (rows, chunks): (&[Row<'_>], Chunks),
-) -> Result<Value> {
+) -> Result<Written> {
     let (names, mut chunk): (Vec<&str>, Vec<u64>) = dimensions
         .iter()
         .map(|(name, n)| (name.as_str(), *n))
@@ -79,22 +128,22 @@ pub(super) fn write(
         *first = long;
     }
     std::fs::create_dir_all(folder)?;
-    for (number, rows) in rows.chunks(long as usize).enumerate() {
-        if rows.iter().all(Vec::is_empty) {
-            continue;
-        }
+    let parts = rows.par_chunks(long as usize).enumerate();
+    let parts = parts.filter(|(_, rows)| !rows.iter().all(Vec::is_empty));
+    let sums = parts.map(|(number, rows)| {
         let mut bytes = Vec::with_capacity((long * length * NUMBER) as usize);
         for (index, row) in rows.iter().enumerate() {
-            for number in row.iter().flat_map(|part| part.iter()) {
-                bytes.extend_from_slice(&number.to_le_bytes());
-            }
+            row.iter().for_each(|part| part.add_to(&mut bytes));
             fill(&mut bytes, (index as u64 + 1) * length);
         }
         fill(&mut bytes, long * length);
-        let path = folder.join(chunk_name(number as u64, 0, shape.len()));
+        let name = chunk_name(number as u64, 0, shape.len());
+        let path = folder.join(&name);
         std::fs::create_dir_all(path.parent().unwrap_or(folder))?;
-        std::fs::write(path, bytes)?;
-    }
+        std::fs::write(path, &bytes)?;
+        Ok((name, checksums::sum(&bytes)))
+    });
+    let mut sums = sums.collect::<Result<Sums>>()?;
     let metadata = json!({
         "zarr_format": 3,
         "node_type": "array",
@@ -107,17 +156,19 @@ pub(super) fn write(
         "attributes": attributes,
         "dimension_names": names,
     });
-    write_metadata(folder, &metadata)?;
-    Ok(metadata)
+    sums.extend([write_metadata(folder, &metadata)?]);
+    let about = metadata;
+    Ok(Written { about, sums })
 }
 
-/// Writes the metadata of an array, or of the folder of several.
+/// Writes the metadata of an array, or of the folder of several, and returns their name with their checksum.
 ///
 /// # Errors
 /// Whatever the system says.
-pub(super) fn write_metadata(folder: &Path, metadata: &Value) -> Result<()> {
+pub(super) fn write_metadata(folder: &Path, metadata: &Value) -> Result<(String, String)> {
     let text = serde_json::to_string_pretty(metadata)? + "\n";
-    std::fs::write(folder.join("zarr.json"), text)
+    std::fs::write(folder.join(METADATA), &text)?;
+    Ok((METADATA.to_owned(), checksums::sum(text.as_bytes())))
 }
 
 /// Adds NaN up to so many numbers.
@@ -127,11 +178,12 @@ fn fill(bytes: &mut Vec<u8>, numbers: u64) {
     }
 }
 
-/// The file of the chunk with these numbers along the first two of so many dimensions.
-fn chunk_name(first: u64, second: u64, dimensions: usize) -> PathBuf {
+/// The file of the chunk with these numbers along the first two of so many dimensions, `/` between folders.
+fn chunk_name(first: u64, second: u64, dimensions: usize) -> String {
     let numbers = [first, second].into_iter().chain(std::iter::repeat(0));
     let numbers = numbers.take(dimensions).map(|number| number.to_string());
-    std::iter::once("c".to_owned()).chain(numbers).collect()
+    let parts: Vec<String> = std::iter::once("c".to_owned()).chain(numbers).collect();
+    parts.join("/")
 }
 
 /// An array that is read.
@@ -149,7 +201,7 @@ impl StoredArray {
     /// # Errors
     /// Whatever the system says; metadata of arrays that this program does not write.
     pub(super) fn open(folder: &Path) -> Result<Self> {
-        let text = super::place::read(&folder.join("zarr.json"))?;
+        let text = super::place::read(&folder.join(METADATA))?;
         let metadata: Metadata = serde_json::from_slice(&text)?;
         let chunk = &metadata.chunk_grid["configuration"]["chunk_shape"];
         let chunk: Vec<u64> = Deserialize::deserialize(chunk)?;
@@ -221,7 +273,7 @@ impl StoredArray {
     }
 
     /// A chunk, or what it holds at one of its places along the first dimension; `None` where there is none.
-    fn chunk(&self, name: &Path, place: Option<u64>) -> Result<Option<Vec<f64>>> {
+    fn chunk(&self, name: &str, place: Option<u64>) -> Result<Option<Vec<f64>>> {
         let mut file = match File::open(self.folder.join(name)) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             file => file?,
@@ -233,7 +285,6 @@ impl StoredArray {
         let (whole, part) = (product(&self.chunk), product(&self.chunk[1..]));
         let found = file.metadata()?.len();
         let (Some(part), true) = (part, whole == Some(found)) else {
-            let name = name.display();
             let words = format!("the chunk {name} has another length, {found} bytes");
             return Err(Error::other(words));
         };

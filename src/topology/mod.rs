@@ -58,6 +58,7 @@ impl Default for DetectOptions {
 
 /// Kinds of features.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FeatureKind {
     /// A local maximum.
     Peak,
@@ -72,6 +73,7 @@ pub enum FeatureKind {
 
 /// Whether a feature is there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Verdict {
     /// Its persistence exceeds what noise can make at the chosen confidence.
     Present,
@@ -83,6 +85,7 @@ pub enum Verdict {
 
 /// A peak, valley or crater of one density.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Feature {
     /// What it is.
     pub kind: FeatureKind,
@@ -108,6 +111,7 @@ pub struct Feature {
 
 /// Errors of a feature's place and height: what other readings and the second discretisation, or replicates, differ by.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FeatureErrors {
     /// Of the place, one number an axis of the density; empty where unknown. The place of a ring is one of its points:
     /// this is across it.
@@ -118,6 +122,7 @@ pub struct FeatureErrors {
 
 /// The detector's findings on one density.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Detection {
     /// Counts of the features whose verdict is `Present`, corrected by the indicators at a centre of symmetry, and what
     /// lies within what.

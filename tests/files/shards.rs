@@ -96,6 +96,108 @@ fn what_a_shard_has_solved_and_checked_is_not_solved_again() {
     }
 }
 
+/// The journal of a merge says where densities are, and does not hold them once more.
+#[cfg(unix)]
+#[test]
+fn a_killed_merge_reads_its_shards_and_goes_on_by_itself() {
+    use super::killing::{size, stopped_at};
+
+    let room = Room::new();
+    shards(&room, RAYLEIGH, 3, &[]);
+    room.run("merge run --out whole --quiet");
+    // A kill that comes late is tried again.
+    let is_killed = (0..20).any(|_| {
+        for name in room.files("run", &["shards"]).keys() {
+            std::fs::remove_file(room.path("run").join(name)).unwrap();
+        }
+        stopped_at(&room, "merge run", 2, "-KILL")
+    });
+    assert!(is_killed, "it ended before it was killed");
+    let (journal, store) = ("run/journal.bin", "whole/densities.zarr");
+    let stored = room.files(store, &[]).values().map(Vec::len).sum::<usize>();
+    assert!(100 * size(&room.path(journal)) < stored as u64, "{stored}");
+    let printed = room.run("detect run --out looked --quiet");
+    printed.says(&["interrupted"]);
+    // What the shards hold is what is read, here and where the run was moved to with them.
+    let points = room.table("looked/points.csv").0;
+    assert!(!points.is_empty());
+    std::fs::create_dir(room.path("moved")).unwrap();
+    std::fs::rename(room.path("run"), room.path("moved/run")).unwrap();
+    room.run("detect moved/run --out again --quiet");
+    for name in ["points.csv", "features.csv", "densities.zarr/p_xy/c/0/0/0"] {
+        let [a, b] = ["looked", "again"].map(|run| room.bytes(&format!("{run}/{name}")));
+        assert!(a == b, "{name}");
+    }
+    // A shard that is gone, or was damaged, is told.
+    let shard = room.path("moved/run/shards/1-of-3");
+    std::fs::rename(&shard, room.path("aside")).unwrap();
+    room.refused("detect moved/run --out none", &["1-of-3, which is gone"]);
+    std::fs::rename(room.path("aside"), &shard).unwrap();
+    let chunk = "moved/run/shards/1-of-3/densities.zarr/p_x/c/0/0";
+    let bytes = room.bytes(chunk);
+    let mut damaged = bytes.clone();
+    damaged[17] ^= 1;
+    room.write(chunk, damaged);
+    room.refused("detect moved/run --out none", &["p_x/c/0/0"]);
+    room.write(chunk, bytes);
+    room.run("merge moved/run --quiet");
+    let [found, wanted] = ["moved/run", "whole"].map(|run| {
+        let mut files = room.files(run, &["shards"]);
+        let told = [
+            "run.json",
+            "ro-crate-metadata.json",
+            "checksums.sha256",
+            "points.csv",
+        ];
+        files.retain(|name, _| !told.contains(&name.as_str()) && !name.starts_with(".pbif"));
+        files
+    });
+    assert!(found.keys().eq(wanted.keys()));
+    for (name, bytes) in &found {
+        assert!(wanted[name] == *bytes, "{name}");
+    }
+    // Its rows say how long values took that no shard has solved.
+    let [found, wanted] = ["moved/run", "whole"].map(|run| {
+        let rows = room.table(&format!("{run}/points.csv")).0;
+        let of = ["a", "status", "residual", "mean_x", "sd_y", "distance"];
+        rows.iter()
+            .map(|row| row.texts(of).map(str::to_owned))
+            .collect::<Vec<_>>()
+    });
+    assert_eq!(found, wanted);
+}
+
+#[test]
+fn what_shards_have_detected_is_not_detected_again_unless_another_program_has() {
+    let room = Room::new();
+    shards(&room, RAYLEIGH, 2, &[]);
+    let merged = |out: &str| room.run(&format!("merge run --out {out}")).text();
+    assert!(!merged("taken").contains("detecting in"));
+    // Shards of a version that keeps no detections, and of another build.
+    for shard in ["1-of-2", "2-of-2"] {
+        let file = |name: &str| format!("run/shards/{shard}/{name}");
+        let sums = room.read(&file("checksums.sha256"));
+        let is_other = |line: &&str| !line.ends_with("detections.bin");
+        let left: Vec<&str> = sums.lines().filter(is_other).collect();
+        room.write(&file("checksums.sha256"), left.join("\n") + "\n");
+    }
+    assert!(merged("detected").contains("detecting in "));
+    for name in ["features.csv", "bifurcations.csv", "checks.csv"] {
+        let [a, b] = ["taken", "detected"].map(|run| room.read(&format!("{run}/{name}")));
+        assert_eq!(a, b, "{name}");
+    }
+    let stores = ["taken", "detected"].map(|run| room.files(&format!("{run}/densities.zarr"), &[]));
+    assert!(stores[0] == stores[1]);
+    // A damaged one is refused.
+    shards(&room, RAYLEIGH, 2, &[2]);
+    let file = "run/shards/1-of-2/detections.bin";
+    let mut bytes = room.bytes(file);
+    let last = bytes.len() - 9;
+    bytes[last] ^= 1;
+    room.write(file, bytes);
+    room.refused("merge run --out none", &["detections.bin"]);
+}
+
 #[test]
 fn missing_shards_are_named_and_those_that_are_there_can_be_looked_at() {
     let room = Room::new();

@@ -1,12 +1,17 @@
 //! Writes every point as soon as it is done, and tells how far the sweep is.
 
+use std::time::{Duration, Instant};
+
 use crate::continuation::{CheckedIndicator, Observer, Point};
 use crate::job::{Context, Progress};
-use crate::run::{JobFolder, JournalledSource, Manifest, RunError, RunFolder};
+use crate::run::{Gathered, JobFolder, Journal, JournalledSource, Manifest, RunError, RunFolder};
 use crate::sweep_file::Sweep;
 
 /// Failures as observers hand them on.
 type Failure = Box<dyn std::error::Error + Send + Sync>;
+
+/// Time between two manifests while points come from shards.
+const BETWEEN_MANIFESTS: Duration = Duration::from_millis(100);
 
 /// What a sweep tells its points.
 pub(super) struct Recorder<'a> {
@@ -16,11 +21,14 @@ pub(super) struct Recorder<'a> {
     pub(super) manifest: Manifest,
     pub(super) context: &'a Context<'a>,
     pub(super) source: &'a JournalledSource,
-    /// What shards saw in their checks.
-    pub(super) checks: Vec<CheckedIndicator>,
+    pub(super) journal: &'a Journal,
+    /// What shards have solved, and saw in their checks.
+    pub(super) known: Gathered,
     /// Points of earlier processes that have not come from the journal yet. Then the tables that are there are
     /// replaced.
     pub(super) missing: usize,
+    /// When the manifest last said how many points are done.
+    pub(super) told: Option<Instant>,
     /// Points that wait for those.
     pub(super) held: Vec<Point>,
 }
@@ -66,6 +74,8 @@ impl Recorder<'_> {
 impl Observer for Recorder<'_> {
     fn point(&mut self, point: &Point, done: usize, remaining: usize) -> Result<(), Failure> {
         (self.context.observer)(&Progress::Solved(point));
+        let family = self.sweep.problem.family();
+        let is_of_shard = self.known.holders.keep(self.journal, family, point)?;
         if self.source.is_stored(point.value) {
             self.missing = self.missing.saturating_sub(1);
             self.held.push(point.clone());
@@ -82,6 +92,14 @@ impl Observer for Recorder<'_> {
             .add_points(self.sweep.problem.subject(), std::slice::from_ref(point))?;
         self.say(point, done, done + remaining);
         self.manifest.points = done;
+        // Many points that shards have solved come at once: that some of them are told of is enough.
+        let is_soon = self
+            .told
+            .is_some_and(|told| told.elapsed() < BETWEEN_MANIFESTS);
+        if is_of_shard && is_soon {
+            return Ok(());
+        }
+        self.told = Some(Instant::now());
         Ok(self.run.write_progress(&self.manifest)?)
     }
 
@@ -92,7 +110,19 @@ impl Observer for Recorder<'_> {
         ));
     }
 
+    fn known_points(&mut self) -> Vec<Point> {
+        let points = std::mem::take(&mut self.known.points);
+        let is_left = |point: &&Point| point.detections.is_empty() && !point.densities.is_empty();
+        let left = points.iter().filter(is_left).count();
+        if left > 0 {
+            let all = points.len();
+            let words = format!("detecting in {left} of {all} values that shards have solved");
+            self.context.say(&words);
+        }
+        points
+    }
+
     fn known_checks(&mut self) -> Vec<CheckedIndicator> {
-        std::mem::take(&mut self.checks)
+        self.known.checks.take().unwrap_or_default()
     }
 }

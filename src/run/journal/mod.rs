@@ -12,6 +12,7 @@ mod session;
 mod solved;
 mod source;
 
+pub(in crate::run) use solved::Held;
 pub use source::JournalledSource;
 
 use std::collections::HashMap;
@@ -100,7 +101,8 @@ impl Journal {
     /// Solves that earlier processes have left.
     pub fn solves(&self) -> usize {
         let shared = self.lock();
-        let solves = shared.places.keys().filter(|key| !key.is_of_point());
+        let solves = shared.places.keys();
+        let solves = solves.filter(|key| !key.is_of_point() && **key != Key::SHARDS);
         solves.count()
     }
 
@@ -173,6 +175,9 @@ struct Key([u8; 16]);
 const POINT: [u8; 16] = [0xff; 16];
 
 impl Key {
+    /// That of the shards which hold densities.
+    const SHARDS: Self = Self([0xfe; 16]);
+
     fn of(name: &str) -> Self {
         Self([0; 16]).then(name)
     }

@@ -4,14 +4,13 @@
 //! the hash of all of it. So whoever asks for the same is given what is there, in whatever order sessions are opened
 //! and on however many threads, and what is not there is solved from where an uninterrupted session would have stood.
 
-use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use super::kept::{Kept, KeptSolution, Question, in_words};
 use super::{Journal, Key};
-use crate::continuation::{Point, Sensitivity, Session, Solution, SourceError};
+use crate::continuation::{Sensitivity, Session, Solution, SourceError};
 use crate::run::RunError;
 use crate::system::Family;
 
@@ -48,16 +47,6 @@ pub(super) struct Last {
 impl Session for JournalledSession {
     fn solve(&mut self, value: f64) -> Result<Solution<'_>, SourceError> {
         self.settle()?;
-        if let Some(point) = self.known.points.get(&value.to_bits()) {
-            self.seconds = Some(point.seconds);
-            let written = self.journal.write_known(&self.family, point);
-            written.map_err(|error| self.journal.end(error))?;
-            return Ok(Solution {
-                report: point.report.clone(),
-                densities: point.densities.clone(),
-                sensitivity: None,
-            });
-        }
         let key = self.key.of_value(&self.family, value);
         let kept = self.journal.get::<Kept>(key);
         let kept = kept.map_err(|error| self.journal.end(error))?;
@@ -286,8 +275,6 @@ impl Sensitivity for Answers<'_> {
 /// What sessions of one source share.
 #[derive(Debug, Default)]
 pub(super) struct Known {
-    /// Points that are known beside the journal, by the bits of their values.
-    pub(super) points: HashMap<u64, Point>,
     /// Whether solutions are asked how they answer to parameters.
     pub(super) is_asked: bool,
     /// Whether what is solved are the points of a sweep.

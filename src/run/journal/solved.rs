@@ -3,6 +3,7 @@
 //! Beside each solve of the sweep itself, those of its checks left out, a short record says of which point it is, and
 //! of what its densities are: another sweep file may watch other quantities under the same names.
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::kept::Kept;
@@ -31,6 +32,17 @@ enum RecordPlace {
     At(Key),
     /// Here, since a shard has solved it.
     Here(Box<Kept>),
+    /// In the store of a shard, by its place in [`Journal::shards`].
+    In(usize),
+}
+
+/// Where a journal has the densities of a point.
+#[derive(Debug, PartialEq)]
+pub(in crate::run) enum Held {
+    /// In itself.
+    Here(Vec<EstimatedDensity>),
+    /// In the shard of this place in [`Journal::shards`].
+    In(usize),
 }
 
 fn described(family: &Family, observable: Observable) -> Described {
@@ -46,6 +58,22 @@ fn of_densities(family: &Family, densities: &[EstimatedDensity]) -> Vec<Describe
 }
 
 impl Journal {
+    /// Says which shards hold densities.
+    ///
+    /// # Errors
+    /// [`RunError::Write`].
+    pub(in crate::run) fn write_shards<T: Serialize>(&self, shards: &[T]) -> Result<(), RunError> {
+        self.write(Key::SHARDS, &shards)
+    }
+
+    /// The shards that hold densities, as they were written.
+    ///
+    /// # Errors
+    /// [`RunError::Read`], [`RunError::Journal`].
+    pub(in crate::run) fn shards<T: DeserializeOwned>(&self) -> Result<Vec<T>, RunError> {
+        Ok(self.get(Key::SHARDS)?.unwrap_or_default())
+    }
+
     /// Says that a solve is that of a point.
     ///
     /// # Errors
@@ -61,16 +89,25 @@ impl Journal {
         self.write(Key::of_point(value), &PointRecord { place, densities })
     }
 
-    /// Keeps a point that a shard has solved, unless an earlier process has.
+    /// Keeps a point that a shard has solved, unless an earlier process has: where it is, if the shard of that place in
+    /// [`Journal::shards`] holds its densities, or all of it.
     ///
     /// # Errors
     /// [`RunError::Write`].
-    pub(super) fn write_known(&self, family: &Family, point: &Point) -> Result<(), RunError> {
+    pub(crate) fn write_known(
+        &self,
+        family: &Family,
+        point: &Point,
+        shard: Option<usize>,
+    ) -> Result<(), RunError> {
         if self.has_point(point.value) {
             return Ok(());
         }
         let densities = of_densities(family, &point.densities);
-        let place = RecordPlace::Here(Box::new(Kept::of_point(point)));
+        let place = match shard {
+            Some(place) => RecordPlace::In(place),
+            None => RecordPlace::Here(Box::new(Kept::of_point(point))),
+        };
         self.write(
             Key::of_point(point.value),
             &PointRecord { place, densities },
@@ -93,7 +130,7 @@ impl Journal {
         subject: &Subject,
         (space, bins): (&CellSpace, &[Axis]),
         value: f64,
-    ) -> Result<Option<Vec<EstimatedDensity>>, RunError> {
+    ) -> Result<Option<Held>, RunError> {
         let Some(record) = self.get::<PointRecord>(Key::of_point(value))? else {
             return Ok(None);
         };
@@ -101,6 +138,7 @@ impl Journal {
         let kept = match record.place {
             RecordPlace::At(key) => self.get(key)?.ok_or_else(broken)?,
             RecordPlace::Here(kept) => *kept,
+            RecordPlace::In(shard) => return Ok(Some(Held::In(shard))),
         };
         if !kept.is_sound() || kept.densities().len() != record.densities.len() {
             return Err(broken());
@@ -134,6 +172,7 @@ impl Journal {
                 ..density.clone()
             })
         });
-        found.collect::<Result<_, _>>().map(Some)
+        let found = found.collect::<Result<_, _>>()?;
+        Ok(Some(Held::Here(found)))
     }
 }

@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 use super::session::{Inner, JournalledSession, Known};
 use super::{Journal, Key};
 use crate::cancellation::Cancellation;
-use crate::continuation::{DensitySource, Point, Session, SourceError, Subject, Want};
+use crate::continuation::{DensitySource, Session, SourceError, Subject, Want};
 
 /// A source all of whose sessions are in a journal, those of its finer and enclosed sources too: solves that are there
 /// are given from it, the same to the bit, all others are solved as they would have been, and written.
@@ -31,16 +31,9 @@ impl JournalledSource {
         Self::at(source, journal, Key::of("main"), known)
     }
 
-    /// The same for a sweep, which asks no solution how it answers: every solve is written before it is given. Values
-    /// of `points` are known, whatever their sessions had solved before, and are not solved.
-    pub(crate) fn of_sweep(
-        source: Box<dyn DensitySource>,
-        journal: &Journal,
-        points: Vec<Point>,
-    ) -> Self {
-        let points = points.into_iter();
+    /// The same for a sweep, which asks no solution how it answers: every solve is written before it is given.
+    pub(crate) fn of_sweep(source: Box<dyn DensitySource>, journal: &Journal) -> Self {
         let known = Known {
-            points: points.map(|point| (point.value.to_bits(), point)).collect(),
             is_swept: true,
             ..Known::default()
         };

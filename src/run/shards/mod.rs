@@ -1,20 +1,19 @@
 //! The shards of a sweep: runs of their own in `shards/1-of-4`, `shards/2-of-4`, … of a run's folder, each with its own
 //! lock, and read together.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::path::{Path, PathBuf};
 
-use super::{Ending, RunError, StoredRun};
+use rayon::prelude::*;
+
+use super::holding_shard::HoldingShard;
+use super::kept_detections::give_detections;
+use super::place::{SHARDS, shard_folder};
+use super::{Ending, Journal, RunError, StoredRun};
 use crate::continuation::{CheckedIndicator, Point, Shard, Subject};
 use crate::space::{Axis, CellSpace};
-
-/// The folder of all shards in that of a run.
-const SHARDS: &str = "shards";
-
-/// Where a shard of the run in `folder` stands.
-pub(crate) fn shard_folder(folder: &Path, shard: Shard) -> PathBuf {
-    let name = format!("{}-of-{}", shard.number(), shard.of());
-    folder.join(SHARDS).join(name)
-}
+use crate::system::Family;
 
 /// The shards of one sweep, as far as they are there.
 #[derive(Debug)]
@@ -27,13 +26,59 @@ pub(crate) struct Shards {
     missing: Vec<(Shard, String)>,
 }
 
+/// Shards that are read side by side: their files are read once for the densities, and once for the checksums, then
+/// from what the system still has of them in memory.
+const AT_ONCE: usize = 8;
+
 /// What shards have solved and seen.
 #[derive(Debug, Default)]
 pub(crate) struct Gathered {
     /// All points, each value once.
     pub(crate) points: Vec<Point>,
+    /// The shards that hold their densities.
+    pub(crate) holders: Holders,
     /// What was seen in their checks; `None` where there were none.
     pub(crate) checks: Option<Vec<CheckedIndicator>>,
+}
+
+/// Which shards hold the densities of which points.
+#[derive(Debug, Default)]
+pub(crate) struct Holders {
+    /// In the order of their numbers; `None` of one that nobody could know again.
+    shards: Vec<Option<HoldingShard>>,
+    /// By the bits of the values of points: the place of the shard that a point is of.
+    points: HashMap<u64, usize>,
+}
+
+impl Holders {
+    /// Tells a journal of the shards.
+    ///
+    /// # Errors
+    /// [`RunError::Write`].
+    pub(crate) fn tell(&self, journal: &Journal) -> Result<(), RunError> {
+        if self.shards.is_empty() {
+            return Ok(());
+        }
+        journal.write_shards(&self.shards)
+    }
+
+    /// Keeps a point in a journal if a shard has solved it, and says whether one has.
+    ///
+    /// # Errors
+    /// [`RunError::Write`].
+    pub(crate) fn keep(
+        &self,
+        journal: &Journal,
+        family: &Family,
+        point: &Point,
+    ) -> Result<bool, RunError> {
+        let Some(&place) = self.points.get(&point.value.to_bits()) else {
+            return Ok(false);
+        };
+        let holds = self.shards.get(place).is_some_and(Option::is_some);
+        journal.write_known(family, point, holds.then_some(place))?;
+        Ok(true)
+    }
 }
 
 impl Shards {
@@ -117,31 +162,63 @@ impl Shards {
     /// solved from its neighbour.
     ///
     /// # Errors
-    /// As [`StoredRun::points`] and [`StoredRun::checks`].
+    /// As [`StoredRun::points`] and [`StoredRun::checks`]; [`RunError::Checksums`].
     pub(crate) fn gather(
         &self,
         subject: &Subject,
         cells: (&CellSpace, &[Axis]),
         methods: &[&'static str],
     ) -> Result<Gathered, RunError> {
+        // A shard that has just begun has no table yet.
+        let begun =
+            |run: &&StoredRun| run.points_done() != Some(0) || run.ending() == Ending::Complete;
+        let runs: Vec<&StoredRun> = self.runs.iter().filter(begun).collect();
+        let read = runs.chunks(AT_ONCE).flat_map(|some| {
+            let read = some
+                .par_iter()
+                .map(|run| read(run, subject, cells, methods));
+            read.collect::<Vec<_>>()
+        });
         let mut gathered = Gathered::default();
-        for run in &self.runs {
-            // A shard that has just begun has no table yet.
-            if run.points_done() == Some(0) && run.ending() != Ending::Complete {
-                continue;
-            }
-            for point in run.points(subject, cells, methods)? {
-                let is_known = |known: &Point| known.value == point.value;
-                if !gathered.points.iter().any(is_known) {
+        for (place, one) in read.enumerate() {
+            let (shard, points, seen) = one?;
+            let holders = &mut gathered.holders;
+            holders.shards.push(shard);
+            for point in points {
+                if let Entry::Vacant(entry) = holders.points.entry(point.value.to_bits()) {
+                    entry.insert(place);
                     gathered.points.push(point);
                 }
             }
-            if let Some(seen) = run.checks(subject)? {
+            if let Some(seen) = seen {
                 gathered.checks.get_or_insert_default().extend(seen);
             }
         }
         Ok(gathered)
     }
+}
+
+/// What is read of a shard: how it is known again where its densities can be read later, its points, and what was seen
+/// in its checks.
+type Read = (
+    Option<HoldingShard>,
+    Vec<Point>,
+    Option<Vec<CheckedIndicator>>,
+);
+
+fn read(
+    run: &StoredRun,
+    subject: &Subject,
+    cells: (&CellSpace, &[Axis]),
+    methods: &[&'static str],
+) -> Result<Read, RunError> {
+    let mut points = run.points(subject, cells, methods)?;
+    let shard = run.shard().filter(|_| run.ending() == Ending::Complete);
+    let shard = shard.and_then(|shard| HoldingShard::at(run.path(), shard));
+    if shard.is_some() {
+        give_detections(run.path(), &mut points)?;
+    }
+    Ok((shard, points, run.checks(subject)?))
 }
 
 /// Into how many shards the sweep was cut whose shards are there.

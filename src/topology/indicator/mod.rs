@@ -60,6 +60,7 @@ use crate::space::Axis;
 
 /// An indicator at one parameter value.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Indicator {
     /// Which.
     pub kind: IndicatorKind,

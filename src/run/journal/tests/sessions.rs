@@ -186,16 +186,21 @@ fn what_shards_have_solved_is_not_solved_and_a_sweep_is_written_at_once() {
         seconds: 1.5,
     };
     let known = point.densities.clone();
-    let source = JournalledSource::of_sweep(diary(&count), &journal, vec![point]);
+    let source = JournalledSource::of_sweep(diary(&count), &journal);
+    let family = &source.subject().family;
+    journal.write_known(family, &point, None).unwrap();
+    // Of what a shard holds, the journal says where it is.
+    let held = Point {
+        value: 4.0,
+        ..point
+    };
+    journal.write_known(family, &held, Some(2)).unwrap();
     let mut session = source.open(&never);
-    for (value, iterations, seconds) in [(3.0, 0, Some(1.5)), (1.0, 218, None), (3.0, 0, Some(1.5))]
-    {
-        let solution = session.solve(value).unwrap();
-        assert_eq!(solution.report.iterations, iterations);
-        assert!(solution.sensitivity.is_none());
-        drop(solution);
-        assert_eq!(session.seconds(), seconds);
-    }
+    let solution = session.solve(1.0).unwrap();
+    assert_eq!(solution.report.iterations, 218);
+    assert!(solution.sensitivity.is_none());
+    drop(solution);
+    assert_eq!(session.seconds(), None);
     assert_eq!((*count.lock().unwrap(), source.solves()), (1, 1));
     // While the session goes on.
     let journal = open(folder.path(), SWEEP).unwrap();
@@ -209,11 +214,15 @@ fn what_shards_have_solved_is_not_solved_and_a_sweep_is_written_at_once() {
     let joint = watched(Observable::Joint(0, 1));
     let found =
         |subject: &Subject, space: &CellSpace, value| look.densities(subject, (space, &[]), value);
-    assert_eq!(found(&joint, &space(), 3.0).unwrap(), Some(known));
+    assert_eq!(
+        found(&joint, &space(), 3.0).unwrap(),
+        Some(Held::Here(known))
+    );
+    assert_eq!(found(&joint, &space(), 4.0).unwrap(), Some(Held::In(2)));
     assert_eq!(found(&joint, &space(), 2.0).unwrap(), None);
     assert_eq!(
         found(source.subject(), &space(), 1.0).unwrap(),
-        Some(Vec::new())
+        Some(Held::Here(Vec::new()))
     );
     let other = found(&watched(Observable::Marginal(0)), &space(), 3.0);
     assert!(matches!(other, Err(RunError::NotStored { stored, .. }) if stored == ["xy"]));
@@ -223,13 +232,13 @@ fn what_shards_have_solved_is_not_solved_and_a_sweep_is_written_at_once() {
     ]);
     let other = found(&joint, &finer.unwrap(), 3.0);
     assert!(matches!(other, Err(RunError::Cells { axis, .. }) if axis == "x"));
-    let source = JournalledSource::of_sweep(diary(&count), &journal, Vec::new());
+    let source = JournalledSource::of_sweep(diary(&count), &journal);
     let mut session = source.open(&never);
     assert_eq!(session.solve(1.0).unwrap().report.iterations, 218);
     assert!(session.seconds().is_some());
     session.solve(2.0).unwrap();
     assert!(session.seconds().is_none());
-    assert_eq!(journal.points(), 2);
-    let stored = [1.0, 2.0, 3.0].map(|value| source.is_stored(value));
-    assert_eq!(stored, [true, false, true]);
+    assert_eq!(journal.points(), 3);
+    let stored = [1.0, 2.0, 3.0, 4.0].map(|value| source.is_stored(value));
+    assert_eq!(stored, [true, false, true, true]);
 }
