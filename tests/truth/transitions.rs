@@ -47,6 +47,8 @@ pub(crate) fn found(model: &Arc<Model>, parts: [&str; 2], axes: &[(f64, f64, usi
     let density = KnownDensity {
         unknowns: &unknowns,
         changes: Some(&changes),
+        returning: None,
+        beyond: 0.0,
         planes: &[],
     };
     let settings = (&GeneratorOptions::default(), &RateOptions::default());
