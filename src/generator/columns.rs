@@ -48,6 +48,16 @@ impl LineRates {
         self.axes.iter().any(|axis| !axis.breaks.is_empty())
     }
 
+    /// Whether there is such a plane across an axis at a coordinate.
+    pub(crate) fn is_broken_at(&self, axis: usize, at: f64) -> bool {
+        let of_axis = &self.axes[axis];
+        let mut breaks = of_axis.breaks.iter();
+        breaks.any(|one| {
+            let [below, above] = [one.face - 1, one.face].map(|cell| of_axis.nodes[cell]);
+            below < at && at < above
+        })
+    }
+
     /// Whether the slope of the density jumps at one of them.
     pub(crate) fn has_jumps(&self) -> bool {
         let mut breaks = self.axes.iter().flat_map(|axis| &axis.breaks);

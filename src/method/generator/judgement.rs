@@ -271,8 +271,6 @@ impl GeneratorSession {
         solved: &PointSolve,
         masses: &[f64],
     ) -> Result<(Vec<EstimatedDensity>, Second), MethodError> {
-        let problem = &self.source.problem;
-        let (system, space) = (solved.system.as_ref(), problem.space());
         let unknowns = &solved.steady.mass;
         let change = match (&solved.second, &solved.along) {
             (Some(_), Some((change, true))) if !self.source.sharp => change.clone(),
@@ -290,6 +288,9 @@ impl GeneratorSession {
             }
             _ => change,
         };
+        let change = self.with_bends(solved, change)?;
+        let problem = &self.source.problem;
+        let (system, space) = (solved.system.as_ref(), problem.space());
         let changed: Vec<f64> = unknowns.iter().zip(&change).map(|(u, du)| u + du).collect();
         let by_second = cell_masses(system, space, &changed);
         let difference: Vec<f64> = by_second.iter().zip(masses).map(|(b, a)| b - a).collect();

@@ -5,6 +5,7 @@
 pub(in crate::method) mod angles_tests;
 mod at_phases;
 mod basins;
+mod bends;
 mod coarse;
 mod cost;
 mod forcing;

@@ -60,6 +60,20 @@ pub(super) fn all_kinked_surfaces(
     surfaces
 }
 
+/// The switching surfaces across which no noise acts and on which a force bends or turns.
+pub(super) fn turning_surfaces(system: &dyn System, space: &CellSpace) -> Vec<SwitchingSurface> {
+    let turns = |surface: &SwitchingSurface| {
+        let found = break_at(system, space, *surface);
+        matches!(found, Break::Curvature | Break::Bend)
+    };
+    let mut surfaces = system.facts().switching_surfaces.clone();
+    surfaces.retain(|surface| {
+        let is_carried = space.axes()[surface.axis].is_modes();
+        !is_carried && !undriven::is_driven(system, *surface) && turns(surface)
+    });
+    surfaces
+}
+
 /// The places of the switching surfaces across an axis that stay where they are all along the sweep, and at which
 /// faces serve.
 pub(crate) fn fixed_surfaces(

@@ -1,0 +1,163 @@
+//! What schemes err alike beside a plane at which a force turns, as that of a Hertz contact does.
+//!
+//! States cross the plane without noise, so that the density follows the force: where a derivative of the force is not
+//! continuous, one of the density is not either, and every stencil that reaches across takes its slope along the axis
+//! wrongly. To first order that is as if the force were another one in the cells beside the plane: f + δf, where δf is
+//! by how much the stencil's derivative of ∫ f dx is off. What this force would change of the steady state is a part of
+//! its error.
+
+use super::session::{GeneratorSession, PointSolve, ROUGH};
+use crate::method::MethodError;
+use crate::method::structure::turning_surfaces;
+use crate::space::{Axis, CellSpace};
+use crate::system::{SwitchingSurface, System};
+
+/// Nodes on either side of a plane whose stencils reach across it.
+const REACH: usize = 3;
+
+/// Weights of the derivative of fifth order that is biased upwind, for a speed above zero, from three nodes below on.
+const UPWIND: [f64; 6] = [
+    -2.0 / 60.0,
+    15.0 / 60.0,
+    -1.0,
+    20.0 / 60.0,
+    0.5,
+    -3.0 / 60.0,
+];
+
+/// Positive nodes of Gauss's rule of eight on (-1, 1), with their weights.
+const GAUSS: [(f64, f64); 4] = [
+    (0.183_434_642_495_649_8, 0.362_683_783_378_362),
+    (0.525_532_409_916_329, 0.313_706_645_877_887_3),
+    (0.796_666_477_413_626_7, 0.222_381_034_453_374_5),
+    (0.960_289_856_497_536_3, 0.101_228_536_290_376_3),
+];
+
+impl GeneratorSession {
+    /// What the second scheme changes, with what schemes err alike beside planes at which a force turns; that has the
+    /// sign which cancels nothing.
+    pub(super) fn with_bends(
+        &mut self,
+        solved: &PointSolve,
+        mut change: Vec<f64>,
+    ) -> Result<Vec<f64>, MethodError> {
+        let Some(lines) = &solved.second else {
+            return Ok(change);
+        };
+        let (system, space) = (solved.system.as_ref(), self.source.problem.space());
+        let mut surfaces = turning_surfaces(system, space);
+        surfaces.retain(|surface| !lines.is_broken_at(surface.axis, surface.at));
+        let unknowns = &solved.steady.mass;
+        if let Some(flow) = spurious_flow(system, space, &surfaces, unknowns) {
+            let more = self.solver.response(&flow, unknowns, None, ROUGH)?;
+            let together: f64 = change.iter().zip(&more).map(|(a, b)| a * b).sum();
+            let sign = if together < 0.0 { -1.0 } else { 1.0 };
+            let pairs = change.iter_mut().zip(more);
+            pairs.for_each(|(change, more)| *change += sign * more);
+        }
+        Ok(change)
+    }
+}
+
+/// By how much more mass enters each cell by the spurious forces beside some planes; `unknowns` are those of the steady
+/// state. `None` where there is no such plane.
+fn spurious_flow(
+    system: &dyn System,
+    space: &CellSpace,
+    surfaces: &[SwitchingSurface],
+    unknowns: &[f64],
+) -> Option<Vec<f64>> {
+    let mut change = vec![0.0; unknowns.len()];
+    let mut is_any = false;
+    for surface in surfaces {
+        let others = (0..space.dimension()).filter(|&axis| axis != surface.axis);
+        for axis in others.filter(|&axis| !space.axes()[axis].is_modes()) {
+            let forces = spurious_forces(system, space, *surface, axis);
+            add_flow(space, axis, &forces, unknowns, &mut change);
+            is_any = true;
+        }
+    }
+    is_any.then_some(change)
+}
+
+/// δf along an axis in all cells; zero but for those beside the plane.
+fn spurious_forces(
+    system: &dyn System,
+    space: &CellSpace,
+    surface: SwitchingSurface,
+    axis: usize,
+) -> Vec<f64> {
+    let along = &space.axes()[surface.axis];
+    let nodes = along.nodes();
+    let above = nodes.partition_point(|&node| node < surface.at);
+    let near = above.saturating_sub(REACH)..(above + REACH).min(nodes.len());
+    let force = |cell: usize| {
+        let position = space.position(cell, surface.axis);
+        if !near.contains(&position) {
+            return 0.0;
+        }
+        let mut state = space.node(cell);
+        let speed = system.drift_at(0.0, &state)[surface.axis];
+        let mut at = |x: f64| {
+            state[surface.axis] = x;
+            system.drift_at(0.0, &state)[axis]
+        };
+        let slope = derivative_of_integral(along, (position, speed > 0.0), surface.at, &mut at);
+        slope.map_or(0.0, |slope| slope - at(nodes[position]))
+    };
+    (0..space.n_cells()).map(force).collect()
+}
+
+/// The stencil's derivative of ∫ f dx at a node; `None` where it reaches beyond the ends.
+fn derivative_of_integral(
+    axis: &Axis,
+    (position, is_upward): (usize, bool),
+    plane: f64,
+    force: &mut impl FnMut(f64) -> f64,
+) -> Option<f64> {
+    let nodes = axis.nodes();
+    let mut sum = 0.0;
+    for (place, weight) in UPWIND.iter().enumerate() {
+        let offset = place as isize - REACH as isize;
+        let (offset, sign) = if is_upward {
+            (offset, 1.0)
+        } else {
+            (-offset, -1.0)
+        };
+        let node = *nodes.get(position.checked_add_signed(offset)?)?;
+        sum += sign * weight * integral(nodes[position], node, plane, force);
+    }
+    Some(sum / axis.node_stretch(position))
+}
+
+/// ∫ f dx by Gauss's rule on either side of a plane.
+fn integral(from: f64, to: f64, plane: f64, force: &mut impl FnMut(f64) -> f64) -> f64 {
+    let middle = plane.clamp(from.min(to), from.max(to));
+    let mut part = |from: f64, to: f64| {
+        let (centre, half) = (0.5 * (from + to), 0.5 * (to - from));
+        let values = GAUSS.iter().map(|(node, weight)| {
+            let [below, above] = [-1.0, 1.0].map(|sign| force(centre + sign * half * node));
+            weight * (below + above)
+        });
+        half * values.sum::<f64>()
+    };
+    part(from, middle) + part(middle, to)
+}
+
+/// Adds -∂(δf p)/∂x along an axis, by central differences; nothing flows through the ends.
+fn add_flow(space: &CellSpace, axis: usize, forces: &[f64], unknowns: &[f64], change: &mut [f64]) {
+    let along = &space.axes()[axis];
+    let stride: usize = space.shape()[axis + 1..].iter().product();
+    let flux = |cell: usize| {
+        let stretch = along.node_stretch(space.position(cell, axis));
+        forces[cell] * unknowns[cell] / stretch
+    };
+    for cell in 0..unknowns.len() {
+        if space.position(cell, axis) + 1 < along.count() {
+            let next = cell + stride;
+            let across = 0.5 * (flux(cell) + flux(next));
+            change[cell] -= across;
+            change[next] += across;
+        }
+    }
+}
