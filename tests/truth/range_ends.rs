@@ -1,0 +1,73 @@
+//! What the ends of ranges that are too narrow do to densities, shares of the time, entropies and transitions: all of
+//! it against a linear oscillator, whose density is normal.
+
+use std::f64::consts::{E, PI};
+
+use pbif::continuation::Solution;
+use statrs::function::erf::erfc;
+
+use crate::common::sweeps::{measure, solved};
+
+/// x'' = -k x' - x + √(2 k) ξ with the velocity cut off at so many deviations.
+fn cut_off(k: f64, deviations: f64) -> Solution<'static> {
+    let text = format!(
+        "[system.equations]\nx = \"y\"\ny = \"-x - k y\"\n[system.noise]\ny = \"sqrt(2 k)\"\n\
+         [system.parameters]\nk = {k}\n[sweep]\nparameter = \"k\"\nfrom = {k}\nto = {}\npoints = 2\n\
+         [cells]\nx = {{ from = -6, to = 6, count = 80 }}\n\
+         y = {{ from = -{deviations}, to = {deviations}, count = 64 }}\n\
+         [detect]\nmeasures = [\"entropy\"]\n[visits]\nfar = \"x > 1.5\"\n",
+        1.1 * k
+    );
+    solved(&text, "", Some(k)).1
+}
+
+/// Probability of values above x.
+fn above(x: f64) -> f64 {
+    0.5 * erfc(x / 2f64.sqrt())
+}
+
+/// Half of what is stated is what leaves and stays beside the ends; it is taken twice.
+#[test]
+fn what_leaves_through_the_ends_is_a_part_of_all_errors() {
+    for (k, deviations) in [
+        (0.35, 3.5),
+        (0.35, 4.5),
+        (0.05, 4.5),
+        (0.05, 5.0),
+        (0.35, 5.5),
+    ] {
+        let solution = cut_off(k, deviations);
+        let words = format!("k = {k}, {deviations} deviations");
+        for density in &solution.densities[..2] {
+            let [axis] = density.density.axes.as_slice() else {
+                panic!("{words}: not of one axis");
+            };
+            let errors = density.stated_errors();
+            let exact = axis
+                .edges()
+                .windows(2)
+                .map(|edge| (above(edge[0]) - above(edge[1])) / (edge[1] - edge[0]));
+            for (cell, exact) in exact.enumerate() {
+                let off = (density.density.values[cell] - exact).abs();
+                assert!(
+                    off <= errors[cell],
+                    "{words}: {} in {cell}",
+                    off / errors[cell]
+                );
+            }
+        }
+        let exact = [
+            ("far_time_share", above(1.5)),
+            ("far_visits", (-0.5 * 1.5_f64.powi(2)).exp() / (2.0 * PI)),
+            ("entropy_xy", (2.0 * PI * E).ln()),
+        ];
+        for (name, exact) in exact {
+            let (value, error) = measure(&solution, name);
+            let ratio = (value - exact).abs() / error;
+            assert!(ratio <= 1.0, "{words}: {name} {ratio}");
+            // An error that is a part of the ends' holds, and says how large they are.
+            let is_of_ends = deviations < 5.0;
+            assert!(!is_of_ends || ratio > 0.3, "{words}: {name} {ratio}");
+        }
+    }
+}
