@@ -86,17 +86,21 @@ fn unknowns(spec: &Sweep) -> String {
 
 fn generator_costs(spec: &Sweep, cost: &GeneratorCost) -> Vec<String> {
     let sessions = spec.sessions();
+    let (method, locate) = (&spec.settings.method.generator, &spec.settings.locate);
+    let checks = method.bytes_of_checks(spec.problem.space(), locate.grid_check);
+    let all = sessions as f64 * cost.bytes + checks;
     vec![
         unknowns(spec),
         format!(
-            "memory: {}, {} of it for factors ({}){}",
+            "memory: {}, {} of it for factors ({}){}; up to {} while located rows are checked",
             bytes_in_words(sessions as f64 * cost.bytes),
             bytes_in_words(sessions as f64 * cost.factors.factor_bytes as f64),
             cost.factors.method.name(),
             match sessions {
                 1 => String::new(),
                 sessions => format!("; {sessions} parts of the sweep are solved side by side"),
-            }
+            },
+            bytes_in_words(all)
         ),
         format!(
             "time: a factorisation takes {:.1e} operations, about {:.2} s on two cores; most points reuse a neighbour's",

@@ -4,6 +4,7 @@
 //! second scheme, and the one kept for sensitivities.
 
 use super::GeneratorMethodOptions;
+use super::options::finer_axes;
 use crate::space::CellSpace;
 use crate::stationary::generator::{Estimate, RateError, estimate};
 
@@ -70,6 +71,15 @@ impl GeneratorMethodOptions {
         let limit = self.memory_limit * 1e9;
         let fit = self.cost(space).map_or(1.0, |cost| limit / cost.bytes);
         wanted.min(fit as usize).max(1)
+    }
+
+    /// Bytes at work while rows are checked beside sessions on these cells: on them between closed ends, and on finer
+    /// cells where that is asked for. Where finer cells do not fit the limit they are not solved.
+    pub(crate) fn bytes_of_checks(&self, space: &CellSpace, on_finer_cells: bool) -> f64 {
+        let bytes = |space: &CellSpace| self.cost(space).map_or(0.0, |cost| cost.bytes);
+        let finer = CellSpace::new(finer_axes(space)).ok();
+        let finer = finer.filter(|_| on_finer_cells);
+        bytes(space) + finer.map_or(0.0, |finer| bytes(&finer))
     }
 
     /// What a point costs on these cells.
