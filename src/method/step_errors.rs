@@ -5,10 +5,10 @@
 //! those of the step, and not of the equations: with ε = J √(b² h)/4, J the jump of the slope of log p, values are off
 //! by shares of the order of ε, and within the push itself by more. Increments of four values make copies of that spike
 //! at the places where one step leads from the plane. The envelopes of these shares were fitted to dry friction
-//! (`tests/truth/sgcm_time_steps.rs` holds them to other systems).
+//! (`tests/truth/sampled_time_steps.rs` holds them to other systems).
 
 use super::structure::intensity_beside;
-use crate::density::{EstimatedDensity, Kink};
+use crate::density::{EstimatedDensity, EstimatedMoments, Kink, Moments};
 use crate::sampling::Integrator;
 use crate::space::{Axis, CellSpace};
 use crate::system::{SwitchingSurface, System};
@@ -88,6 +88,29 @@ pub(super) fn add_wider(densities: &mut [EstimatedDensity], share: f64) {
             }
         }
     }
+}
+
+/// Moments with what cells and steps make of them beside sampling: variances in `excess`, one an axis, and noise that is
+/// larger by a share. Quantities are taken to answer to that as squares of the axes do.
+pub(super) fn widened(
+    estimated: Vec<EstimatedMoments>,
+    excess: &[f64],
+    share: f64,
+) -> Vec<EstimatedMoments> {
+    let one = |(index, one): (usize, EstimatedMoments)| {
+        let deviation = one.moments.standard_deviation;
+        one.with(match excess.get(index) {
+            Some(excess) => Moments {
+                mean: 0.0,
+                standard_deviation: 0.5 * (excess / deviation + share * deviation),
+            },
+            None => Moments {
+                mean: share * deviation,
+                standard_deviation: share * deviation,
+            },
+        })
+    };
+    estimated.into_iter().enumerate().map(one).collect()
 }
 
 /// The layer about a plane.

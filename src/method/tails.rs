@@ -124,7 +124,8 @@ impl Inward {
     fn level(&self) -> f64 {
         let density = |&(mass, width): &(f64, f64)| (mass / width).max(0.0);
         let largest = self.cells.iter().map(density).fold(0.0, f64::max);
-        let beside = self.cells.get(CELLS_FROM_END).map_or(0.0, density);
+        let beside = self.cells.get(CELLS_FROM_END).or(self.cells.last());
+        let beside = beside.map_or(0.0, density);
         if largest > 0.0 { beside / largest } else { 0.0 }
     }
 

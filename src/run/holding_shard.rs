@@ -8,6 +8,9 @@ use super::place::shard_folder;
 use super::{RunError, checksums};
 use crate::continuation::Shard;
 
+/// The store of the densities in the folder of a shard.
+const DENSITIES: &str = "densities.zarr";
+
 /// A complete shard, whose densities do not change any more.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct HoldingShard {
@@ -49,13 +52,19 @@ impl HoldingShard {
         let found = found.ok_or_else(|| RunError::ShardGone {
             path: self.folder.clone(),
         })?;
-        checksums::require(&found, &["densities.zarr"])?;
+        checksums::require(&found, &[DENSITIES])?;
         Ok(found)
     }
 }
 
-/// By what the shard in a folder is known.
+/// By what the shard in a folder is known: the checksums of its densities. Figures and tables may be made anew.
 fn identity(folder: &Path) -> Option<String> {
-    let sums = std::fs::read(folder.join(checksums::NAME)).ok()?;
-    Some(checksums::sum(&sums))
+    let sums = checksums::read(folder).ok()??;
+    let mut lines: Vec<String> = sums
+        .iter()
+        .filter(|(name, _)| name.starts_with(DENSITIES))
+        .map(|(name, sum)| format!("{sum}  {name}\n"))
+        .collect();
+    lines.sort_unstable();
+    (!lines.is_empty()).then(|| checksums::sum(lines.concat().as_bytes()))
 }

@@ -56,19 +56,22 @@ impl Provenance {
     }
 
     /// All on which the last digits of a result depend beside what was computed: the program, how it was compiled, and
-    /// the instruction sets of this processor. Of a program that no commit tells, its file stands for it.
-    pub(crate) fn of_arithmetic() -> String {
+    /// the instruction sets of this processor. Of a program that no commit tells, its file stands for it; `None` where that
+    /// cannot be read.
+    pub(crate) fn of_arithmetic() -> Option<String> {
         let made = Self::of_this_process();
         let is_known = |commit: &&str| !commit.ends_with("-dirty");
         let file = match made.commit.filter(is_known) {
             Some(_) => None,
-            None => std::env::current_exe().and_then(std::fs::metadata).ok(),
+            None => {
+                let file = std::env::current_exe().and_then(std::fs::metadata).ok()?;
+                Some((file.len(), file.modified().ok()?))
+            }
         };
-        let file = file.map(|file| (file.len(), file.modified().ok()));
         let program = (env!("CARGO_PKG_VERSION"), made.commit, file);
         let compiled = (made.compiler, made.target, made.target_features);
         let machine = (made.optimisation, made.architecture, made.instruction_sets);
-        format!("{program:?} {compiled:?} {machine:?}")
+        Some(format!("{program:?} {compiled:?} {machine:?}"))
     }
 
     /// Now it has ended.

@@ -4,7 +4,8 @@
 //! its second discretisation, and of a rougher reconstruction. What these differ by is the error. As the
 //! discretisations may cross at the very place, what differences that are independent from cell to cell would do is
 //! added, to a height the relative difference of the densities as wholes.
-//! With noise it is read again from every replicate.
+//! With noise it is read again from every replicate. Heights have besides what standard errors know and replicates do
+//! not, as what a time step does.
 
 use super::critical::{Critical, FLAT};
 use super::field::Field;
@@ -92,7 +93,11 @@ fn by_replicates(
     let along = |k: usize| of(&|one| one.position[k]);
     // What sampling is not, as the time step beside a kink, is in the standard errors alone.
     let sampled = (estimated.variants).sampling_error(|values| values[cell]);
-    let all = estimated.standard_error.get(cell).copied()?;
+    let all = estimated
+        .standard_error
+        .get(cell)
+        .copied()
+        .unwrap_or(sampled);
     let besides = (all * all - sampled * sampled).max(0.0).sqrt();
     (read.len() > 1).then(|| FeatureErrors {
         position: (0..feature.position.len()).map(along).collect(),

@@ -208,7 +208,7 @@ fn sweeps_over_one_parameter_lie_in_the_band_of_coulomb_friction() {
     });
     insta::assert_snapshot!(format!("{points} points\n{}", told.join("\n")), @r"
     45 points
-    followed by 46 solves, 19 + 146
+    followed by 46 solves, 17 + 148
     checked by 14 solves, 6 + 159
     ");
 

@@ -6,24 +6,29 @@
 //! by how much the stencil's derivative of ∫ f dx is off. What this force would change of the steady state is a part of
 //! its error.
 
+use std::cmp::Ordering;
+
 use super::session::{GeneratorSession, PointSolve, ROUGH};
+use crate::generator::AdvectiveScheme;
 use crate::method::MethodError;
 use crate::method::structure::turning_surfaces;
 use crate::space::{Axis, CellSpace};
+use crate::stationary::generator::RateError;
 use crate::system::{SwitchingSurface, System};
 
 /// Nodes on either side of a plane whose stencils reach across it.
 const REACH: usize = 3;
 
-/// Weights of the derivative of fifth order that is biased upwind, for a speed above zero, from three nodes below on.
-const UPWIND: [f64; 6] = [
-    -2.0 / 60.0,
-    15.0 / 60.0,
-    -1.0,
-    20.0 / 60.0,
-    0.5,
-    -3.0 / 60.0,
-];
+/// Weights of a scheme's derivative at a node whose speed is above zero, from three nodes below it on.
+fn weights(scheme: AdvectiveScheme) -> [f64; 7] {
+    match scheme {
+        AdvectiveScheme::Upwind5 => {
+            [-2.0, 15.0, -60.0, 20.0, 30.0, -3.0, 0.0].map(|one| one / 60.0)
+        }
+        AdvectiveScheme::Central4 => [0.0, 1.0, -8.0, 0.0, 8.0, -1.0, 0.0].map(|one| one / 12.0),
+        AdvectiveScheme::Central6 => [-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0].map(|one| one / 60.0),
+    }
+}
 
 /// Positive nodes of Gauss's rule of eight on (-1, 1), with their weights.
 const GAUSS: [(f64, f64); 4] = [
@@ -35,7 +40,7 @@ const GAUSS: [(f64, f64); 4] = [
 
 impl GeneratorSession {
     /// What the second scheme changes, with what schemes err alike beside planes at which a force turns; that has the
-    /// sign which cancels nothing.
+    /// sign with which both together are larger.
     pub(super) fn with_bends(
         &mut self,
         solved: &PointSolve,
@@ -48,8 +53,12 @@ impl GeneratorSession {
         let mut surfaces = turning_surfaces(system, space);
         surfaces.retain(|surface| !lines.is_broken_at(surface.axis, surface.at));
         let unknowns = &solved.steady.mass;
-        if let Some(flow) = spurious_flow(system, space, &surfaces, unknowns) {
-            let more = self.solver.response(&flow, unknowns, None, ROUGH)?;
+        let scheme = self.source.options.scheme;
+        if let Some(flow) = spurious_flow((system, space), scheme, &surfaces, unknowns) {
+            let more = match self.solver.response(&flow, unknowns, None, ROUGH) {
+                Err(RateError::Sensitivity) => return Ok(change),
+                more => more?,
+            };
             let together: f64 = change.iter().zip(&more).map(|(a, b)| a * b).sum();
             let sign = if together < 0.0 { -1.0 } else { 1.0 };
             let pairs = change.iter_mut().zip(more);
@@ -60,30 +69,30 @@ impl GeneratorSession {
 }
 
 /// By how much more mass enters each cell by the spurious forces beside some planes; `unknowns` are those of the steady
-/// state. `None` where there is no such plane.
+/// state. `None` where nothing flows, or nobody can tell how much.
 fn spurious_flow(
-    system: &dyn System,
-    space: &CellSpace,
+    (system, space): (&dyn System, &CellSpace),
+    scheme: AdvectiveScheme,
     surfaces: &[SwitchingSurface],
     unknowns: &[f64],
 ) -> Option<Vec<f64>> {
     let mut change = vec![0.0; unknowns.len()];
-    let mut is_any = false;
     for surface in surfaces {
         let others = (0..space.dimension()).filter(|&axis| axis != surface.axis);
         for axis in others.filter(|&axis| !space.axes()[axis].is_modes()) {
-            let forces = spurious_forces(system, space, *surface, axis);
+            let forces = spurious_forces((system, space), scheme, *surface, axis);
             add_flow(space, axis, &forces, unknowns, &mut change);
-            is_any = true;
         }
     }
-    is_any.then_some(change)
+    let flows = change.iter().any(|&rate| rate != 0.0);
+    let is_finite = change.iter().all(|rate| rate.is_finite());
+    (flows && is_finite).then_some(change)
 }
 
 /// δf along an axis in all cells; zero but for those beside the plane.
 fn spurious_forces(
-    system: &dyn System,
-    space: &CellSpace,
+    (system, space): (&dyn System, &CellSpace),
+    scheme: AdvectiveScheme,
     surface: SwitchingSurface,
     axis: usize,
 ) -> Vec<f64> {
@@ -91,6 +100,7 @@ fn spurious_forces(
     let nodes = along.nodes();
     let above = nodes.partition_point(|&node| node < surface.at);
     let near = above.saturating_sub(REACH)..(above + REACH).min(nodes.len());
+    let weights = weights(scheme);
     let force = |cell: usize| {
         let position = space.position(cell, surface.axis);
         if !near.contains(&position) {
@@ -102,30 +112,41 @@ fn spurious_forces(
             state[surface.axis] = x;
             system.drift_at(0.0, &state)[axis]
         };
-        let slope = derivative_of_integral(along, (position, speed > 0.0), surface.at, &mut at);
-        slope.map_or(0.0, |slope| slope - at(nodes[position]))
+        let mut slope = |direction| {
+            derivative_of_integral(
+                along,
+                (position, direction),
+                (&weights, surface.at),
+                &mut at,
+            )
+        };
+        // Where nothing moves both directions serve, so that mirror images stay that.
+        let both = match speed.total_cmp(&0.0) {
+            Ordering::Greater => [slope(1); 2],
+            Ordering::Less => [slope(-1); 2],
+            Ordering::Equal => [slope(1), slope(-1)],
+        };
+        let [Some(one), Some(other)] = both else {
+            return 0.0;
+        };
+        0.5 * (one + other) - at(nodes[position])
     };
     (0..space.n_cells()).map(force).collect()
 }
 
-/// The stencil's derivative of ∫ f dx at a node; `None` where it reaches beyond the ends.
+/// The stencil's derivative of ∫ f dx at a node, for a direction of the speed; `None` where it reaches beyond the ends.
 fn derivative_of_integral(
     axis: &Axis,
-    (position, is_upward): (usize, bool),
-    plane: f64,
+    (position, direction): (usize, isize),
+    (weights, plane): (&[f64], f64),
     force: &mut impl FnMut(f64) -> f64,
 ) -> Option<f64> {
     let nodes = axis.nodes();
     let mut sum = 0.0;
-    for (place, weight) in UPWIND.iter().enumerate() {
-        let offset = place as isize - REACH as isize;
-        let (offset, sign) = if is_upward {
-            (offset, 1.0)
-        } else {
-            (-offset, -1.0)
-        };
+    for (place, &weight) in weights.iter().enumerate().filter(|(_, one)| **one != 0.0) {
+        let offset = direction * (place as isize - REACH as isize);
         let node = *nodes.get(position.checked_add_signed(offset)?)?;
-        sum += sign * weight * integral(nodes[position], node, plane, force);
+        sum += direction as f64 * weight * integral(nodes[position], node, plane, force);
     }
     Some(sum / axis.node_stretch(position))
 }

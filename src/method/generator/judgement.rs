@@ -31,8 +31,15 @@ use crate::stationary::generator::{RateError, RateInfo};
 /// Escape per unit time below which mass is said to stay in Ω, and relaxation is not looked at.
 const NO_ESCAPE: f64 = 1e-12;
 
-/// A solution, and where there is one the trail that leads on from it, with what the ends of the ranges cut off.
-type Judged = (Solution<'static>, Option<(Trail, CutOff)>);
+/// A solution, and where there is one the trail that leads on from it, with errors of the unknowns.
+type Judged = (Solution<'static>, Option<(Trail, KnownErrors)>);
+
+/// By how much the unknowns of a steady state may be off.
+pub(super) struct KnownErrors {
+    /// Changes by the second scheme, and what all schemes err alike.
+    pub(super) changes: Vec<f64>,
+    pub(super) cut_off: CutOff,
+}
 
 impl GeneratorSession {
     /// Judges a solution and turns it into densities. No error is known of a state of which another scheme's cannot be
@@ -161,13 +168,13 @@ impl GeneratorSession {
         if space.dimension() == 2 {
             reporter.balances(&cells);
         }
-        Ok((
-            reporter.solution(densities, Some(&cells)),
-            Some((
-                trail_after(solved, second.change, relaxation, before),
-                cut_off,
-            )),
-        ))
+        let solution = reporter.solution(densities, Some(&cells));
+        let trail = trail_after(solved, second.by_scheme, relaxation, before);
+        let known = KnownErrors {
+            changes: second.change,
+            cut_off,
+        };
+        Ok((solution, Some((trail, known))))
     }
 
     /// How fast angles turn, and how they spread, from what the second scheme changes, and by how much the ends of the
@@ -288,6 +295,7 @@ impl GeneratorSession {
             }
             _ => change,
         };
+        let by_scheme = change.clone();
         let change = self.with_bends(solved, change)?;
         let problem = &self.source.problem;
         let (system, space) = (solved.system.as_ref(), problem.space());
@@ -308,7 +316,12 @@ impl GeneratorSession {
             unknowns: changed,
             masses: by_second,
         });
-        Ok((densities, Second { change, solved }))
+        let second = Second {
+            change,
+            by_scheme,
+            solved,
+        };
+        Ok((densities, second))
     }
 }
 

@@ -4,8 +4,10 @@ use crate::generator::AdvectiveScheme;
 
 /// What the second scheme says of a point.
 pub(super) struct Second {
-    /// By how much its unknowns differ; nothing in a check.
+    /// By how much its unknowns differ, with what all schemes err alike where a force turns; nothing in a check.
     pub(super) change: Vec<f64>,
+    /// The same without what all schemes err alike.
+    pub(super) by_scheme: Vec<f64>,
     /// Its solution; `None` in a check.
     pub(super) solved: Option<SecondSolve>,
 }

@@ -124,15 +124,15 @@ impl GeneratorSession {
         solved.steady.info.factorisations = self.solver.factorisations() - factorisations;
         solved.third = self.by_third_scheme(&solved)?;
         let (mut solution, judged) = self.judge(&solved, before.as_ref())?;
-        let (trail, cut_off) = judged.unzip();
-        let cut_off = cut_off.unwrap_or_default();
-        let newest = trail.as_ref().and_then(Trail::newest);
+        let newest = judged
+            .as_ref()
+            .and_then(|(trail, errors)| Some((trail.newest()?, errors)));
         let planes = planes(&self.source.kinked);
-        let known = newest.map(|newest| KnownDensity {
+        let known = newest.map(|(newest, errors)| KnownDensity {
             unknowns: &newest.mass,
-            changes: Some(&newest.difference),
-            returning: cut_off.returning.as_deref(),
-            beyond: cut_off.beyond,
+            changes: Some(&errors.changes),
+            returning: errors.cut_off.returning.as_deref(),
+            beyond: errors.cut_off.beyond,
             planes: &planes,
         });
         let Solution {
@@ -141,7 +141,7 @@ impl GeneratorSession {
         let third = solved.third.as_deref();
         let known = (known, third, densities.as_slice());
         self.add_asked(report, value, (&solved.system, None), known)?;
-        let Some(trail) = trail else {
+        let Some((trail, _)) = judged else {
             return Ok(solution);
         };
         let unknowns = Arc::new(solved.steady.mass);

@@ -68,6 +68,7 @@ impl GeneratorSession {
             None => AGAIN * missing.leak,
         };
         for one in densities.iter_mut() {
+            one.truncation.beyond = missing.beyond;
             one.truncation.share = missing.beyond + LEAK_ALLOWANCE * moved;
             if missing.leak > NO_LEAK && missing.level > one.negligible {
                 one.truncation.level = missing.level * one.density.maximum();
@@ -106,9 +107,11 @@ impl GeneratorSession {
             pairs.map(|(rate, mass)| rate * mass).collect::<Vec<f64>>()
         };
         let back = leaving(unknowns);
-        let mut change = self.solver.response(&back, unknowns, None, OF_RETURNS)?;
+        let mut change = self.solver.response_at_ends(&back, unknowns, OF_RETURNS)?;
         let [first, again] = [back, leaving(&change)].map(|all| all.iter().sum::<f64>());
-        let again = (again / first).clamp(0.0, MOST_AGAIN);
+        // Where nothing leaves in the sum, nothing of it leaves again.
+        let again = if first > 0.0 { again / first } else { 0.0 };
+        let again = again.clamp(0.0, MOST_AGAIN);
         change.iter_mut().for_each(|change| *change /= 1.0 - again);
         Ok(change)
     }

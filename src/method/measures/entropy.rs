@@ -8,7 +8,7 @@
 
 use super::{DerivedMeasure, MeasureInput};
 use crate::continuation::{Measure, MeasureKind};
-use crate::density::{EstimatedDensity, Observable, Variants};
+use crate::density::{EstimatedDensity, NEGLIGIBLE, Observable, Variants};
 use crate::system::Family;
 
 pub(super) const ENTROPY: DerivedMeasure = DerivedMeasure {
@@ -84,28 +84,20 @@ struct Cells {
 }
 
 impl Cells {
-    /// What the ends of the ranges may change: dS = -∫ (ln p + 1) dp of what returns, and what lies beyond them, whose
-    /// densities are those at the border at most.
+    /// What the ends of the ranges, and modes that are not there, may change: dS = -∫ (ln p + 1) dp of the changes that
+    /// are known, and what lies beyond the ends, at densities that are no smaller than what the solver leaves.
     fn of_ends(&self, estimated: &EstimatedDensity, value: f64) -> f64 {
         let (values, truncation) = (&estimated.density.values, &estimated.truncation);
-        let slope = |value: f64| if value > 0.0 { value.ln() + 1.0 } else { 0.0 };
-        let (mut returning, mut moved) = (0.0, 0.0);
-        for (cell, (&value, change)) in self.all().zip(values.iter().zip(&truncation.change)) {
-            let mass = change * self.volume(cell);
-            returning += slope(value) * mass;
-            moved += mass.abs();
-        }
-        // The share holds what moves as well.
-        let beyond = (truncation.share - moved).max(0.0);
-        let last = [0, 1].map(|axis: usize| self.widths[axis].len() - 1);
-        let border = self
-            .all()
-            .zip(values)
-            .filter(|(cell, _)| (0..2).any(|axis| cell[axis] == 0 || cell[axis] == last[axis]));
-        let farthest = border
-            .map(|(_, &value)| slope(value).abs())
-            .fold(0.0, f64::max);
-        f64::abs(returning) + beyond * (value.abs() + farthest)
+        let slope = |value: f64| {
+            if value > 0.0 { value.ln() + 1.0 } else { 0.0 }
+        };
+        let pairs = values.iter().zip(&truncation.change);
+        let changes = self.all().zip(pairs);
+        let known =
+            changes.map(|(cell, (&value, change))| slope(value) * change * self.volume(cell));
+        let highest = estimated.density.maximum();
+        let farthest = slope(highest).abs().max(slope(NEGLIGIBLE * highest).abs());
+        known.sum::<f64>().abs() + truncation.beyond * (value.abs() + farthest)
     }
 
     fn volume(&self, [row, column]: [usize; 2]) -> f64 {

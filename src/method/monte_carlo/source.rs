@@ -12,7 +12,7 @@ use crate::method::forcing::on_even_turns;
 use crate::method::measures::{Cells, Others};
 use crate::method::problem::Maps;
 use crate::method::report::Reporter;
-use crate::method::step_errors::{add_layers, add_wider};
+use crate::method::step_errors::{add_layers, add_wider, widened};
 use crate::method::structure::{closed_ends, kinked_surfaces};
 use crate::method::watched::Masses;
 use crate::method::{MethodError, Problem, has_densities};
@@ -241,16 +241,11 @@ impl MonteCarloSource {
         });
         let of_axes: Vec<Moments> = of_axes.collect();
         let (space, replicates) = (self.problem.space(), &found.replicates);
-        let mut moments = maps.all_sampled_moments(space, &of_axes, &found.mass, replicates)?;
-        moments.extend(at_phases(&self.problem, found));
         let certain = plan.bias.map_or(0.0, |bias| bias.certain());
-        for one in &mut moments {
-            let deviation = 0.5 * certain * one.moments.standard_deviation;
-            *one = one.with(Moments {
-                mean: 0.0,
-                standard_deviation: deviation,
-            });
-        }
+        let none = vec![0.0; space.dimension()];
+        let of_states = maps.all_sampled_moments(space, &of_axes, &found.mass, replicates)?;
+        let mut moments = widened(of_states, &none, certain);
+        moments.extend(widened(at_phases(&self.problem, found), &[], certain));
         reporter.moments(&moments);
         let more = rotations_and_answers(&self.problem, system, found, plan.bias);
         reporter.report.measures.extend(more);

@@ -119,7 +119,10 @@ fn cells_widen_a_density_at_a_phase_as_they_do_without_forcing() {
     for (index, (_, phase)) in phases.into_iter().enumerate() {
         let of = |solution: &Solution<'_>, deviation: f64| {
             let density = &solution.densities[1 + index];
-            let noise = density.standard_error.iter().sum::<f64>() * width;
+            // Standard errors have what the cells add to the noise as well.
+            let cells = 0..density.density.values.len();
+            let sampled = cells.map(|cell| density.variants.sampling_error(|values| values[cell]));
+            let noise = sampled.sum::<f64>() * width;
             let exact = |edges: &[f64]| normal(mean(phase), deviation, edges);
             // ½ Σ √(2/π) se is expected of sampling alone.
             (total_variation(density, exact), 0.4 * noise)

@@ -4,6 +4,7 @@
 use super::phases::moments_at_phases;
 use crate::density::{EstimatedMoments, Moments, excess_variances};
 use crate::method::problem::Maps;
+use crate::method::step_errors::widened;
 use crate::method::{MethodError, Problem};
 
 /// Moments of the axes, which are known, of the quantities that are averaged, and of axes at phases, from masses and
@@ -28,25 +29,6 @@ pub(super) fn all_moments(
         known.extend(widened(vec![one.with(more)], &excess[axis..], share));
     }
     Ok(known)
-}
-
-/// Moments with what cells make of them beside sampling: variances in `excess`, one an axis, and noise that is larger
-/// by a share. Quantities are taken to answer to that as squares of the axes do.
-fn widened(estimated: Vec<EstimatedMoments>, excess: &[f64], share: f64) -> Vec<EstimatedMoments> {
-    let one = |(index, one): (usize, EstimatedMoments)| {
-        let deviation = one.moments.standard_deviation;
-        one.with(match excess.get(index) {
-            Some(excess) => Moments {
-                mean: 0.0,
-                standard_deviation: 0.5 * (excess / deviation + share * deviation),
-            },
-            None => Moments {
-                mean: share * deviation,
-                standard_deviation: share * deviation,
-            },
-        })
-    };
-    estimated.into_iter().enumerate().map(one).collect()
 }
 
 #[cfg(test)]

@@ -14,6 +14,9 @@ pub(super) struct Question<'a> {
     pub(super) guess: Option<&'a [f64]>,
     /// Relative error in L1.
     pub(super) tolerance: f64,
+    /// Whether the iterations that it takes say nothing of how far the factors are from the matrix: what enters beside
+    /// the ends of a range takes more of them anyway.
+    pub(super) is_aside: bool,
 }
 
 /// The answer of the masses `mass` to a question and the iterations used, `None` when it takes more than `limit`.

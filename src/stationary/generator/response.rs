@@ -62,7 +62,9 @@ impl DirectSolver {
     ) -> Result<Vec<f64>, RateError> {
         loop {
             if let Some((response, used)) = self.try_to_answer(question, mass)? {
-                self.count_response(used);
+                if !question.is_aside {
+                    self.count_response(used);
+                }
                 return Ok(response);
             }
             let plan = self.plan.as_ref().map(|(_, plan)| *plan);

@@ -283,17 +283,46 @@ impl RateSolver {
         guess: Option<&[f64]>,
         tolerance: f64,
     ) -> Result<Vec<f64>, RateError> {
-        let question = Question {
-            change,
-            guess,
-            tolerance,
-        };
+        self.answer(
+            &Question {
+                change,
+                guess,
+                tolerance,
+                is_aside: false,
+            },
+            mass,
+        )
+    }
+
+    /// The same of what enters beside the ends of the ranges: the work says nothing of how worn the factors are.
+    ///
+    /// # Errors
+    /// As [`RateSolver::sensitivity`].
+    pub(crate) fn response_at_ends(
+        &mut self,
+        change: &[f64],
+        mass: &[f64],
+        tolerance: f64,
+    ) -> Result<Vec<f64>, RateError> {
+        self.answer(
+            &Question {
+                change,
+                guess: None,
+                tolerance,
+                is_aside: true,
+            },
+            mass,
+        )
+    }
+
+    fn answer(&mut self, question: &Question<'_>, mass: &[f64]) -> Result<Vec<f64>, RateError> {
         let Some((matrix, escape)) = &self.folded else {
-            return self.plain.response(&question, mass);
+            return self.plain.response(question, mass);
         };
-        self.plain.shapes(&question, mass)?;
-        if let Some(half) = self.half.as_mut().filter(|_| is_symmetric(change)) {
-            let folded = FoldedQuestion::new(&question, &half.folding);
+        self.plain.shapes(question, mass)?;
+        let is_even = is_symmetric(question.change);
+        if let Some(half) = self.half.as_mut().filter(|_| is_even) {
+            let folded = FoldedQuestion::new(question, &half.folding);
             let mass = half.folding.fold(mass);
             let response = half.solver.response(&folded.question(), &mass)?;
             return Ok(half.folding.unfold(&response));
@@ -302,6 +331,6 @@ impl RateSolver {
         if !self.plain.has_solved(matrix) {
             self.plain.solve(matrix, escape, Some(mass))?;
         }
-        self.plain.response(&question, mass)
+        self.plain.response(question, mass)
     }
 }

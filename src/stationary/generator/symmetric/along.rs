@@ -20,6 +20,7 @@ impl<'a> Along<'a> {
             change: self.change,
             guess: self.expected,
             tolerance: self.tolerance,
+            is_aside: false,
         }
     }
 }
@@ -29,6 +30,7 @@ pub(super) struct FoldedQuestion {
     change: Vec<f64>,
     guess: Option<Vec<f64>>,
     tolerance: f64,
+    is_aside: bool,
 }
 
 impl FoldedQuestion {
@@ -38,6 +40,7 @@ impl FoldedQuestion {
             change: folding.fold(question.change),
             guess: question.guess.map(|guess| folding.fold(guess)),
             tolerance: question.tolerance,
+            is_aside: question.is_aside,
         }
     }
 
@@ -46,6 +49,7 @@ impl FoldedQuestion {
             change: &self.change,
             guess: self.guess.as_deref(),
             tolerance: self.tolerance,
+            is_aside: self.is_aside,
         }
     }
 }

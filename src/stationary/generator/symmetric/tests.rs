@@ -47,6 +47,7 @@ fn half_of_the_cells_give_the_whole_answer() {
             change: &change,
             guess: None,
             tolerance: 1e-8,
+            is_aside: false,
         };
         let b = whole.response(&question, &b.mass).unwrap();
         let size: f64 = b.iter().map(|value| value.abs()).sum();
