@@ -90,8 +90,8 @@ pub(super) fn add_wider(densities: &mut [EstimatedDensity], share: f64) {
     }
 }
 
-/// Moments with what cells and steps make of them beside sampling: variances in `excess`, one an axis, and noise that is
-/// larger by a share. Quantities are taken to answer to that as squares of the axes do.
+/// Moments with what cells and steps make of them beside sampling: variances in `excess`, one an axis, and noise that
+/// is larger by a share. Quantities are taken to answer to that as squares of the axes do.
 pub(super) fn widened(
     estimated: Vec<EstimatedMoments>,
     excess: &[f64],
