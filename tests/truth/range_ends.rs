@@ -6,7 +6,7 @@ use std::f64::consts::{E, PI};
 use pbif::continuation::Solution;
 use statrs::function::erf::erfc;
 
-use crate::common::sweeps::{measure, solved};
+use crate::common::sweeps::{measure, solved, swept};
 
 /// x'' = -k x' - x + √(2 k) ξ with the velocity cut off at so many deviations.
 fn cut_off(k: f64, deviations: f64) -> Solution<'static> {
@@ -70,4 +70,31 @@ fn what_leaves_through_the_ends_is_a_part_of_all_errors() {
             assert!(!is_of_ends || ratio > 0.3, "{words}: {name} {ratio}");
         }
     }
+}
+
+/// Values of a sweep are solved with factors of their neighbours, and each has its part: the share of the time above
+/// 0.513 is 0.15 at m = -0.0925942, by the error function.
+#[test]
+fn a_level_of_a_share_has_the_ends_in_its_error_all_along_a_sweep() {
+    let text = "[sweep]\nparameter = \"m\"\nfrom = -0.3\nto = 0.1\npoints = 9\n[system.equations]\nx = \"y\"\n\
+                y = \"-1.45 (x - m) - 1.01 y\"\n[system.noise]\ny = \"1\"\n[system.parameters]\nm = 0\n\
+                [cells]\nx = { from = -2.85, to = 2.6, count = 100 }\ny = { from = -3.03, to = 3.03, count = 100 }\n\
+                [visits]\nhi = \"x > 0.513\"\n[levels]\nhi_time_share = 0.15\n[locate]\nrelative_tolerance = 1e-3\n";
+    let (_, result) = swept(text, "");
+    let deviation = (1.0 / (2.0 * 1.01 * 1.45_f64)).sqrt();
+    let errors = result.points.iter().map(|point| {
+        let family = &result.subject.family;
+        assert_eq!(family.parameter(), "m");
+        let exact = above((0.513 - point.value) / deviation);
+        let mut measures = point.report.measures.iter();
+        let share = measures.find(|one| one.name == "hi_time_share").unwrap();
+        let error = share.error.unwrap();
+        let ratio = (share.value - exact).abs() / error;
+        assert!((0.3..1.0).contains(&ratio), "{}: {ratio}", point.value);
+        error
+    });
+    let errors: Vec<f64> = errors.collect();
+    let largest = errors.iter().copied().fold(0.0, f64::max);
+    let least = errors.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(largest < 2.0 * least, "{least} {largest}");
 }
