@@ -23,7 +23,7 @@ const MOST_AGAIN: f64 = 0.95;
 
 /// Relative error of what returns, over all cells: what lives beside the ends is a small part of them. With 1e-2 and
 /// factors of a neighbouring value what returns was ten times too small.
-const OF_RETURNS: f64 = 1e-4;
+const OF_RETURNS: f64 = 1e-3;
 
 /// Share of the mass that leaves within a relaxation time below which it changes no number that is asked for.
 const NO_LEAK: f64 = 1e-12;
