@@ -166,8 +166,6 @@ pub(crate) const LEAK_ALLOWANCE: f64 = 2.0;
 pub struct Truncation {
     /// Share by which all values may be off alike.
     pub share: f64,
-    /// The part of it that lies beyond the ends.
-    pub beyond: f64,
     /// By how much each value may be off besides, with its sign; nothing where no more than the share is.
     pub change: Vec<f64>,
     /// The density at open ends of the ranges: what is as low elsewhere may be off by as much, because the states there

@@ -222,8 +222,6 @@ impl Observed {
         };
         Ok(Truncation {
             share: single(read(&self.truncated)?),
-            // Nothing that is derived from what is stored asks for it alone.
-            beyond: 0.0,
             change: Some(read(&self.closed)?).filter(known).unwrap_or_default(),
             level: single(read(&self.end_level)?),
         })

@@ -71,7 +71,6 @@ impl<'a> Cover<'a> {
             negligible: own.negligible,
             truncation: Truncation {
                 share: own.truncation.share,
-                beyond: own.truncation.beyond,
                 change: pick(&own.truncation.change),
                 level: own.truncation.level,
             },

@@ -163,6 +163,7 @@ impl GeneratorSession {
             others: others.as_deref().map_or(Others::None, Others::Second),
             closed: &self.source.closed_ends,
             escape_rate: info.escape_rate,
+            beyond: reporter.missing().beyond,
         };
         // Of more axes it is not cheap.
         if space.dimension() == 2 {

@@ -159,7 +159,6 @@ pub(super) fn solution<'session>(
         let kinked = &source.kinked;
         one.structure = maps.structure(&*open, problem, masses, one.observable, kinked);
         one.truncation.share = reporter.missing().beyond;
-        one.truncation.beyond = one.truncation.share;
         // Of quantities sub-cells leave more than the quadrature does.
         if one.observable == Observable::Marginal(0) {
             know(one, system, found);

@@ -68,7 +68,6 @@ impl GeneratorSession {
             None => AGAIN * missing.leak,
         };
         for one in densities.iter_mut() {
-            one.truncation.beyond = missing.beyond;
             one.truncation.share = missing.beyond + LEAK_ALLOWANCE * moved;
             if missing.leak > NO_LEAK && missing.level > one.negligible {
                 one.truncation.level = missing.level * one.density.maximum();

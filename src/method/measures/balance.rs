@@ -318,6 +318,7 @@ mod tests {
             others: Others::Second(&weights),
             closed: &[[false; 2]; 2],
             escape_rate: 0.0,
+            beyond: 0.0,
         };
         let told = broken(&cells);
         let [

@@ -29,7 +29,8 @@ fn names(family: &Family, observables: &[Observable]) -> Vec<String> {
 
 fn derive(measure: &DerivedMeasure, solved: &MeasureInput<'_>) -> Vec<Measure> {
     let densities = solved.densities.iter();
-    let found = densities.filter_map(|one| Some((one, entropy(one)?)));
+    let beyond = solved.cells.map_or(0.0, |cells| cells.beyond);
+    let found = densities.filter_map(|one| Some((one, entropy(one, beyond)?)));
     found
         .map(|(one, (value, error))| Measure {
             error: Some(error),
@@ -40,8 +41,8 @@ fn derive(measure: &DerivedMeasure, solved: &MeasureInput<'_>) -> Vec<Measure> {
         .collect()
 }
 
-/// The entropy of a joint density with its error; `None` for others.
-fn entropy(estimated: &EstimatedDensity) -> Option<(f64, f64)> {
+/// The entropy of a joint density with its error; `None` for others. `beyond` is the share that lies beyond the ends.
+fn entropy(estimated: &EstimatedDensity, beyond: f64) -> Option<(f64, f64)> {
     let density = &estimated.density;
     let [first, second] = density.axes.as_slice() else {
         return None;
@@ -72,7 +73,7 @@ fn entropy(estimated: &EstimatedDensity) -> Option<(f64, f64)> {
             };
             let grid = (within - 0.25 * coarse.within(&merged)).abs();
             let value = plain - within;
-            let of_ends = cells.of_ends(estimated, value);
+            let of_ends = cells.of_ends((estimated, beyond), value);
             (value, scheme + grid + below + of_ends)
         }
     })
@@ -86,7 +87,7 @@ struct Cells {
 impl Cells {
     /// What the ends of the ranges, and modes that are not there, may change: dS = -∫ (ln p + 1) dp of the changes that
     /// are known, and what lies beyond the ends, at densities that are no smaller than what the solver leaves.
-    fn of_ends(&self, estimated: &EstimatedDensity, value: f64) -> f64 {
+    fn of_ends(&self, (estimated, beyond): (&EstimatedDensity, f64), value: f64) -> f64 {
         let (values, truncation) = (&estimated.density.values, &estimated.truncation);
         let slope = |value: f64| {
             if value > 0.0 { value.ln() + 1.0 } else { 0.0 }
@@ -97,7 +98,7 @@ impl Cells {
             changes.map(|(cell, (&value, change))| slope(value) * change * self.volume(cell));
         let highest = estimated.density.maximum();
         let farthest = slope(highest).abs().max(slope(NEGLIGIBLE * highest).abs());
-        known.sum::<f64>().abs() + truncation.beyond * (value.abs() + farthest)
+        known.sum::<f64>().abs() + beyond * (value.abs() + farthest)
     }
 
     fn volume(&self, [row, column]: [usize; 2]) -> f64 {

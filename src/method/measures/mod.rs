@@ -70,6 +70,8 @@ pub(super) struct Cells<'a> {
     pub(super) closed: &'a [[bool; 2]],
     /// Mass that leaves per unit time.
     pub(super) escape_rate: f64,
+    /// Share of the mass that lies beyond the ends of the ranges.
+    pub(super) beyond: f64,
 }
 
 /// Other estimates of the weights, from which errors follow.

@@ -256,6 +256,7 @@ impl MonteCarloSource {
             others: Others::Replicates(replicates),
             closed: &self.closed_ends,
             escape_rate: found.runaway_rate,
+            beyond: reporter.missing().beyond,
         };
         let densities = self.densities(&maps, system, found)?;
         Ok(reporter.solution(densities, Some(&cells)))

@@ -176,6 +176,7 @@ impl SgcmSource {
                 others: Others::Replicates(&replicates),
                 closed: &self.steps.closed_ends,
                 escape_rate,
+                beyond: doubts.1.beyond,
             }),
         );
         Ok((solution, Some(steady.mass)))
