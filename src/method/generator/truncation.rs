@@ -18,6 +18,9 @@ pub(super) const OF_AN_ANSWER: f64 = 0.1;
 /// What leaves and comes back leaves most likely at once: so many times, at most, it does within a relaxation time.
 const AGAIN: f64 = 10.0;
 
+/// Mass that what leaves may move and densities have it as a share alone, which is stated of all values then.
+const LITTLE: f64 = 5e-4;
+
 /// Share of what comes back that leaves again, at most.
 const MOST_AGAIN: f64 = 0.95;
 
@@ -51,8 +54,8 @@ impl GeneratorSession {
             errors.map(|(error, volume)| error * volume).sum::<f64>()
         });
         let least = stated.fold(f64::INFINITY, f64::min);
-        // Where less leaves than schemes differ by, its share will do.
-        let is_little = AGAIN * missing.leak <= least;
+        // Where less leaves than schemes differ by, or little, its share will do.
+        let is_little = AGAIN * missing.leak <= least.max(LITTLE);
         let is_asked = ask_for_ends(self.source.problem.subject());
         let returning = if missing.leak > NO_LEAK && (is_asked || !is_little) {
             Some(self.returning(solved)?)
