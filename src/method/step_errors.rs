@@ -16,7 +16,7 @@ use crate::system::{SwitchingSurface, System};
 /// Height of the layer over ε, and its width over √(b² h).
 const LAYER: (f64, f64) = (0.7, 0.6);
 
-/// Area of the spike at the plane over ε √(b² h), and how many times as much that of increments of four values is.
+/// Area of the spike at the plane over ε √(b² h), of normal increments and of those of four values.
 const SPIKE: f64 = 0.3;
 const OF_FOUR: f64 = 0.5;
 
@@ -26,9 +26,6 @@ const COPIES: f64 = 2.0;
 /// Width over √(b² h) from which cells average over what one step does, which moves mass and makes none.
 const AVERAGING: f64 = 0.35;
 
-/// Integrator and time step of trajectories.
-pub(super) type Steps = (Integrator, f64);
-
 /// Adds to the standard errors what the step does beside the kinks of densities; `masses` are those of all cells, and
 /// `surfaces` are where kinks are.
 pub(super) fn add_layers(
@@ -36,7 +33,7 @@ pub(super) fn add_layers(
     (system, space): (&dyn System, &CellSpace),
     masses: &[f64],
     surfaces: &[SwitchingSurface],
-    (integrator, time_step): Steps,
+    (integrator, time_step): (Integrator, f64),
 ) {
     for one in densities {
         let axes = one.observable.axes();
@@ -100,9 +97,11 @@ pub(super) fn widened(
     let one = |(index, one): (usize, EstimatedMoments)| {
         let deviation = one.moments.standard_deviation;
         one.with(match excess.get(index) {
-            Some(excess) => Moments {
+            Some(&excess) => Moments {
                 mean: 0.0,
-                standard_deviation: 0.5 * (excess / deviation + share * deviation),
+                // What does not vary has no variance in excess either.
+                standard_deviation: 0.5
+                    * (excess / deviation.max(f64::MIN_POSITIVE) + share * deviation),
             },
             None => Moments {
                 mean: share * deviation,
@@ -124,14 +123,13 @@ struct Layer {
 impl Layer {
     /// Adds shares of the values by which a density may be off beside a kink; of several kinks the sum.
     fn add(&self, share: &mut [f64], axes: &[Axis], kink: &Kink) {
-        let mut stride = vec![1; axes.len()];
-        for axis in (1..axes.len()).rev() {
-            stride[axis - 1] = stride[axis] * axes[axis].count();
-        }
+        let Ok(cells) = CellSpace::new(axes.to_vec()) else {
+            return;
+        };
         let across = &axes[kink.axis];
         let other = (0..axes.len()).find(|&axis| axis != kink.axis);
         for (cell, share) in share.iter_mut().enumerate() {
-            let place = |axis: usize| cell / stride[axis] % axes[axis].count();
+            let place = |axis: usize| cells.position(cell, axis);
             let position = place(kink.axis);
             let jump = kink.jump_at(other.map_or(0, place)).abs();
             let [from, to] = [across.edges()[position], across.edges()[position + 1]];

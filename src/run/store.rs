@@ -16,7 +16,7 @@ use super::RunError;
 use super::arrays::{DensityPart, Layout};
 use super::checksums::Sums;
 use super::tree::rename;
-use super::zarr::{self, Chunks, Part, Row, Written};
+use super::zarr::{self, Chunks, PointValues, StoredValues, Written};
 use crate::UNFINISHED;
 use crate::continuation::StateField;
 use crate::density::{EstimatedDensity, Variants};
@@ -68,7 +68,7 @@ const FEW_VALUES: usize = 4;
 /// A store that is composed.
 #[derive(Default)]
 struct Store<'a> {
-    arrays: Vec<(Layout, Vec<Row<'a>>)>,
+    arrays: Vec<(Layout, Vec<PointValues<'a>>)>,
 }
 
 impl<'a> Store<'a> {
@@ -106,41 +106,33 @@ impl<'a> Store<'a> {
             }
             let both = [&field.values, &field.errors];
             for (layout, numbers) in Layout::field(family, field).into_iter().zip(both) {
-                self.put(layout, index, vec![Part::Known(numbers)]);
+                self.put(layout, index, vec![StoredValues::Known(numbers)]);
             }
         }
     }
 
     fn add_estimate(&mut self, family: &Family, index: usize, estimate: &'a EstimatedDensity) {
-        let whole = |values: &'a [f64]| vec![Part::Known(values)];
+        let whole = |values: &'a [f64]| vec![StoredValues::Known(values)];
         let values = whole(&estimate.density.values);
         self.put(
             Layout::part(DensityPart::Density, family, estimate),
             index,
             values,
         );
-        let errors = vec![Part::Later(Box::new(|| estimate.stated_errors()))];
+        let errors = vec![StoredValues::Later(Box::new(|| estimate.stated_errors()))];
         self.put(
             Layout::part(DensityPart::Error, family, estimate),
             index,
             errors,
         );
         let truncation = &estimate.truncation;
-        if truncation.share > 0.0 {
-            let share = vec![vec![truncation.share].into()];
-            self.put(
-                Layout::part(DensityPart::Truncated, family, estimate),
-                index,
-                share,
-            );
-        }
-        if truncation.level > 0.0 {
-            let level = vec![vec![truncation.level].into()];
-            self.put(
-                Layout::part(DensityPart::EndLevel, family, estimate),
-                index,
-                level,
-            );
+        let single = [
+            (DensityPart::Truncated, truncation.share),
+            (DensityPart::EndLevel, truncation.level),
+        ];
+        for (part, number) in single.into_iter().filter(|(_, number)| *number > 0.0) {
+            let layout = Layout::part(part, family, estimate);
+            self.put(layout, index, vec![vec![number].into()]);
         }
         if !truncation.change.is_empty() {
             let change = whole(&truncation.change);
@@ -161,7 +153,7 @@ impl<'a> Store<'a> {
             }
             Variants::Jackknife(replicates) => {
                 let layout = Layout::part(DensityPart::Replicates, family, estimate);
-                let parts = replicates.iter().map(|one| Part::Known(one));
+                let parts = replicates.iter().map(|one| StoredValues::Known(one));
                 self.put(layout, index, parts.collect());
             }
         }
@@ -190,7 +182,7 @@ impl<'a> Store<'a> {
     }
 
     /// Adds the numbers of an array at a place along the parameter.
-    fn put(&mut self, layout: Layout, index: usize, row: Row<'a>) {
+    fn put(&mut self, layout: Layout, index: usize, row: PointValues<'a>) {
         let known = (self.arrays.iter()).position(|(known, _)| known.name == layout.name);
         let known = known.unwrap_or_else(|| {
             self.arrays.push((layout.clone(), Vec::new()));
@@ -207,7 +199,7 @@ impl<'a> Store<'a> {
     /// Writes all arrays, and what readers need not look for then: the metadata of all of them in one place.
     fn write(mut self, family: &Family, folder: &Path) -> std::io::Result<Sums> {
         let values = self.arrays.first().map_or(0, |(_, rows)| rows.len());
-        let filled = |rows: &[Row<'_>]| rows.iter().filter(|row| !row.is_empty()).count();
+        let filled = |rows: &[PointValues<'_>]| rows.iter().filter(|row| !row.is_empty()).count();
         let of_densities = |layout: &Layout| layout.is_along(family) && layout.dimensions.len() > 1;
         let densities = self
             .arrays

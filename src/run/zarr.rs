@@ -46,10 +46,10 @@ fn codecs() -> Value {
 }
 
 /// The numbers of an array at one index of the first dimension, in parts; what they do not fill is NaN.
-pub(super) type Row<'a> = Vec<Part<'a>>;
+pub(super) type PointValues<'a> = Vec<StoredValues<'a>>;
 
 /// Numbers that are written one after the other.
-pub(super) enum Part<'a> {
+pub(super) enum StoredValues<'a> {
     /// Those that somebody has.
     Known(&'a [f64]),
     /// Those that were made to be written.
@@ -58,13 +58,13 @@ pub(super) enum Part<'a> {
     Later(Box<dyn Fn() -> Vec<f64> + Send + Sync + 'a>),
 }
 
-impl From<Vec<f64>> for Part<'_> {
+impl From<Vec<f64>> for StoredValues<'_> {
     fn from(numbers: Vec<f64>) -> Self {
         Self::Made(numbers)
     }
 }
 
-impl Part<'_> {
+impl StoredValues<'_> {
     fn add_to(&self, bytes: &mut Vec<u8>) {
         match self {
             Self::Known(numbers) => add(numbers, bytes),
@@ -109,7 +109,7 @@ pub(super) fn write(
     folder: &Path,
     dimensions: &[(String, u64)],
     attributes: &Map<String, Value>,
-    (rows, chunks): (&[Row<'_>], Chunks),
+    (rows, chunks): (&[PointValues<'_>], Chunks),
 ) -> Result<Written> {
     let (names, mut chunk): (Vec<&str>, Vec<u64>) = dimensions
         .iter()

@@ -38,6 +38,7 @@ fn a_linear_system_fluctuates_about_its_moving_mean_as_without_a_force() {
     let exact = PI * force * force / (2.0 * d);
     let off = (ratio - exact).abs();
     assert!(off <= error, "{off:e} of {error:e}");
+    // Most of it is what layers of cells would do if their differences were independent.
     assert!(error < 2.5e-5 * exact, "{error:e}");
 }
 

@@ -1,4 +1,4 @@
-//! What open ends of Ω may have changed of densities.
+//! What open ends of Ω may have changed of densities, and of what is asked of a steady state besides.
 //!
 //! What lies beyond them is missing: inside, all values are too large by as much. What leaves through them comes back
 //! in truth, while here all of the mass comes back in its place. In first order that is what the steady state would
