@@ -30,23 +30,3 @@ pub(super) fn all_moments(
     }
     Ok(known)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn axes_and_quantities_are_widened_as_squares_are() {
-        let own = Moments {
-            mean: 1.0,
-            standard_deviation: 2.0,
-        };
-        let exact = EstimatedMoments::by_difference(own, &[own]);
-        let found = widened(vec![exact, exact], &[0.04], 0.01);
-        let errors = |index: usize| found[index].errors.unwrap();
-        // √(4 + 0.04) - 2, and noise of 1.01 in place of 1.
-        assert!((errors(0).standard_deviation - 0.02).abs() < 1e-12);
-        assert_eq!(errors(0).mean, 0.0);
-        assert!((errors(1).mean - 0.02).abs() < 1e-12);
-    }
-}
