@@ -285,7 +285,7 @@ pub enum PassageFault {
     RunsAway,
     /// The slowest mode is no exchange between the two regions.
     NoSwitching,
-    /// A region is the basin of a peak that the density does not have.
+    /// A region is the basin of a peak, or of a ring, that the density does not have, or whose border was not found.
     NoPeak,
     /// The two regions of transitions have cells in common.
     Overlap,

@@ -45,7 +45,7 @@ pub use uncertainty::estimate;
 pub(crate) use uncertainty::estimate_projected;
 
 use crate::space::Axis;
-use crate::system::Family;
+use crate::system::{Family, joined_names};
 
 /// A density that is watched. Numbers beyond the axes of the state are those of the family's quantities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -71,8 +71,7 @@ impl Observable {
     pub fn name(self, family: &Family) -> String {
         let axes = self.axes().into_iter();
         let names: Vec<&str> = axes.map(|axis| family.axis(axis)).collect();
-        let is_letter = |name: &&str| name.chars().count() == 1;
-        names.join(if names.iter().all(is_letter) { "" } else { "_" })
+        joined_names(&names)
     }
 
     /// Symbols of its axes, with `_{}` and `^{}`, for systems of a family.

@@ -98,6 +98,23 @@ pub(crate) fn summed_to_walls<'a>(
     summed
 }
 
+/// Unknowns of a density whose integral is one, and the share by which they were changed for it: where there are walls
+/// that reflect, the integral is not their own sum.
+pub(crate) fn normalised_to_walls<'a>(
+    system: &dyn System,
+    space: &CellSpace,
+    unknowns: &'a [f64],
+) -> (Cow<'a, [f64]>, f64) {
+    match summed_to_walls(system, space, unknowns) {
+        Cow::Borrowed(_) => (Cow::Borrowed(unknowns), 0.0),
+        Cow::Owned(summed) => {
+            let whole: f64 = summed.iter().sum();
+            let normalised = unknowns.iter().map(|one| one / whole).collect();
+            (Cow::Owned(normalised), (whole - 1.0).abs())
+        }
+    }
+}
+
 /// Replaces unknowns by masses along all lines of a block, whose cells are `stride` apart.
 fn integrate(block: &mut [f64], stride: usize, weights: &[(usize, Vec<f64>)]) {
     let mut line = vec![0.0; weights.len()];

@@ -60,8 +60,8 @@ pub(crate) use chain::{
 pub(crate) use columns::LineRates;
 pub use derivative::assemble_derivative;
 pub use grading::automatic_grading;
-pub(crate) use masses::summed_to_walls;
 pub use masses::{cell_masses, unknown_moments};
+pub(crate) use masses::{normalised_to_walls, summed_to_walls};
 pub(crate) use one_axis::{End, NODES, exponent_at};
 pub use one_axis::{OneAxis, one_axis, profile};
 pub(crate) use resolution::{Resolution, resolution};

@@ -134,9 +134,9 @@ pub enum MethodError {
         /// Whether one carries a series.
         has_series: bool,
     },
-    /// Monte Carlo, of a passage with the basin of a peak.
+    /// Monte Carlo and SGCM, of a passage with a region that is found in a density.
     #[error(
-        "passage `{passage}` has the basin of a peak, which is found by the generator alone: give an inequality in its place"
+        "passage `{passage}` has a region that is found in a density, which the generator does alone: give an inequality in its place"
     )]
     Basin {
         /// Name of the passage.

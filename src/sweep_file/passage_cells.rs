@@ -146,7 +146,7 @@ impl Settings {
     }
 
     /// How many cells a region holds where it holds most of what is looked for: some at any value, else none, or all.
-    /// `None` for the basin of a peak, and where it has no value.
+    /// `None` for what is found in a density, and where it has no value.
     fn held(&self, region: &Region, space: &CellSpace) -> Option<Held> {
         if region.basin().is_some() {
             return None;

@@ -83,7 +83,7 @@ pub use path::Path;
 pub(crate) use quantity::AtPhase;
 pub use quantity::{Quantity, QuantityError, QuantityFault, quantities};
 pub use questions::{ExponentMethod, Questions};
-pub(crate) use region::Basin;
+pub(crate) use region::{Basin, BasinOf, joined_names};
 pub use region::{Region, RegionError, RegionFault, regions};
 pub use spectrum::{Band, Fluctuating, Sides, SpectrumQuestion};
 pub(crate) use symmetry::{proved_symmetry, symmetry_over_a_period};

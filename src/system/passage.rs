@@ -37,7 +37,7 @@ pub struct VisitsQuestion {
 }
 
 impl PassageQuestion {
-    /// Whether it starts in the basin of a peak, or ends there.
+    /// Whether it starts or ends in a region that is found in a density.
     pub(crate) fn has_basins(&self) -> bool {
         let start = match &self.start {
             PassageStart::Region(region) => region.basin(),

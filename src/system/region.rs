@@ -4,8 +4,8 @@
 //! `one and other` the larger of two levels, of `one or other` the smaller one, of `not one` the level with the other
 //! sign. So the border has a place on every line, to the last digit, and a region is a formula like any other.
 //!
-//! A region may also be found: the basin of a peak of a density, `peak 2 of x`, whose ends are known where the density
-//! is.
+//! A region may also be found: the basin of a peak of a density, `peak 2 of x` or `peak 2 of xy`, or what lies within a
+//! ring, `inside ring of xy`, whose borders are known where the density is.
 
 mod level;
 
@@ -24,31 +24,68 @@ pub struct Region {
     basin: Option<Basin>,
 }
 
-/// The basin of a peak of the marginal density of an axis: up to the valleys beside it.
+/// What is found in a density: the basin of a peak, or what lies within a ring or beyond it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Basin {
-    /// The peak, counted from 1 along the axis.
-    pub(crate) peak: usize,
-    /// The axis.
-    pub(crate) axis: usize,
+    /// What of the density.
+    pub(crate) of: BasinOf,
+    /// The axis of a marginal density, or both axes of a joint one.
+    pub(crate) axes: (usize, Option<usize>),
+}
+
+/// What of a density a basin is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum BasinOf {
+    /// Of a peak, counted from 1 in the order of places: up to the valleys around it.
+    Peak(usize),
+    /// Within the crest around the crater of a joint density.
+    InsideRing,
+    /// Beyond that crest.
+    OutsideRing,
 }
 
 impl Basin {
-    /// Reads `peak 2 of x`; `None` of another text.
+    /// Reads `peak 2 of x`, `peak 2 of xy`, `inside ring of xy` and `outside ring of xy`; `None` of another text.
     fn read(model: &Model, text: &str) -> Option<Result<Self, RegionFault>> {
         let words: Vec<&str> = text.split_whitespace().collect();
-        let ["peak", number, "of", name] = words[..] else {
-            return None;
+        let (of, name) = match words[..] {
+            ["peak", number, "of", name] => {
+                let peak = number.parse().ok().filter(|&peak: &usize| peak > 0);
+                (peak.map(BasinOf::Peak), name)
+            }
+            ["inside", "ring", "of", name] => (Some(BasinOf::InsideRing), name),
+            ["outside", "ring", "of", name] => (Some(BasinOf::OutsideRing), name),
+            _ => return None,
         };
-        let axis = model.axes.iter().position(|axis| axis.name == name);
-        let peak = number.parse().ok().filter(|&peak: &usize| peak > 0);
-        Some(match peak.zip(axis) {
-            Some((peak, axis)) => Ok(Self { peak, axis }),
-            None => Err(RegionFault::Basin {
+        let axes = axes_of(model, name);
+        let is_known = |of: &BasinOf, second: Option<usize>| {
+            matches!(of, BasinOf::Peak(_)) || second.is_some()
+        };
+        Some(match of.zip(axes) {
+            Some((of, axes)) if is_known(&of, axes.1) => Ok(Self { of, axes }),
+            _ => Err(RegionFault::Basin {
                 axes: model.axes.iter().map(|axis| axis.name.clone()).collect(),
             }),
         })
     }
+}
+
+/// The axis with a name, or both axes whose joint density has it.
+fn axes_of(model: &Model, name: &str) -> Option<(usize, Option<usize>)> {
+    let names: Vec<&str> = model.axes.iter().map(|axis| axis.name.as_str()).collect();
+    if let Some(axis) = names.iter().position(|one| *one == name) {
+        return Some((axis, None));
+    }
+    let pairs = (0..names.len()).flat_map(|one| (0..names.len()).map(move |other| (one, other)));
+    let mut named = pairs
+        .filter(|&(one, other)| one != other && joined_names(&[names[one], names[other]]) == name);
+    named.next().map(|(one, other)| (one, Some(other)))
+}
+
+/// The name of the density of some axes: theirs run together, with `_` between them where one is longer than a letter.
+pub(crate) fn joined_names(names: &[&str]) -> String {
+    let is_letter = |name: &&str| name.chars().count() == 1;
+    names.join(if names.iter().all(is_letter) { "" } else { "_" })
 }
 
 impl Region {
@@ -73,11 +110,20 @@ impl Region {
             lower.map(|end| format!("{name} > {end:?}")),
             upper.map(|end| format!("{name} < {end:?}")),
         ];
-        let text = parts
-            .into_iter()
-            .flatten()
-            .collect::<Vec<_>>()
-            .join(" and ");
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
+        self.within(model, &parts)
+    }
+
+    /// The states for which all of some inequalities hold; of the same name.
+    ///
+    /// # Errors
+    /// [`RegionFault`] without any, or of one that is wrong.
+    pub(crate) fn within(
+        &self,
+        model: &Model,
+        inequalities: &[String],
+    ) -> Result<Self, RegionFault> {
+        let text = inequalities.join(" and ");
         let read = regions(model, &[(self.name(), &text)]);
         let wrong = |errors: Vec<RegionError>| {
             errors
@@ -134,8 +180,11 @@ pub enum RegionFault {
     /// More closing than opening parentheses, or fewer.
     #[error("the parentheses do not match")]
     Parentheses,
-    /// A basin of no peak, or along no axis.
-    #[error("a basin is `peak N of AXIS`, with peaks counted from 1 along an axis: {}", axes.join(", "))]
+    /// What is found in no density: a basin of no peak, along no axis, a ring along one.
+    #[error(
+        "a region that is found is `peak N of AXIS`, with peaks counted from 1 along an axis: {}; or `peak N of`, `inside ring of` or `outside ring of` and the name of a joint density, as {}",
+        axes.join(", "), axes.get(..2).map_or_else(|| "xy".to_owned(), |two| joined_names(&[&two[0], &two[1]]))
+    )]
     Basin {
         /// The axes that there are.
         axes: Vec<String>,
@@ -163,8 +212,8 @@ impl RegionFault {
                 "write `peak 1 of {}`",
                 axes.first().map_or("x", String::as_str)
             )),
-            Self::NoInequality { text } if text.starts_with("peak ") => Some(
-                "the basin of a peak stands alone: give it a region of its own, without `and`, `or` and `not`"
+            Self::NoInequality { text } if text.starts_with("peak ") || text.contains("ring of") => Some(
+                "a region that is found stands alone: give it a region of its own, without `and`, `or` and `not`"
                     .to_owned(),
             ),
             _ => Some(
@@ -207,7 +256,7 @@ pub fn regions(model: &Model, given: &[(&str, &str)]) -> Result<Vec<Region>, Vec
         match &basins[index] {
             None => {}
             Some(Ok(basin)) => {
-                let axis = model.axes[basin.axis].name.clone();
+                let axis = model.axes[basin.axes.0].name.clone();
                 levels.push((axis, Vec::new()));
                 continue;
             }
@@ -307,7 +356,16 @@ mod tests {
     fn basins_of_peaks_are_read_and_stand_in_no_formula() {
         let model = registry::find("coulomb").unwrap();
         let read = regions(&model, &[("left", "peak  1 of x"), ("far", "y > 2")]).unwrap();
-        assert_eq!(read[0].basin(), Some(Basin { peak: 1, axis: 0 }));
+        let basin = |of: BasinOf, axes| Some(Basin { of, axes });
+        assert_eq!(read[0].basin(), basin(BasinOf::Peak(1), (0, None)));
+        for (text, of) in [
+            ("peak 3 of xy", BasinOf::Peak(3)),
+            ("inside ring of xy", BasinOf::InsideRing),
+            ("outside  ring of xy", BasinOf::OutsideRing),
+        ] {
+            let read = regions(&model, &[("one", text)]).unwrap();
+            assert_eq!(read[0].basin(), basin(of, (0, Some(1))), "{text}");
+        }
         assert_eq!(
             (read[0].name(), read[0].text(), read[1].basin()),
             ("left", "peak  1 of x", None)
@@ -325,6 +383,7 @@ mod tests {
         for (text, word) in [
             ("peak 0 of x", "counted from 1"),
             ("peak 1 of q", "along an axis: x, y"),
+            ("inside ring of x", "as xy"),
         ] {
             let error = regions(&model, &[("one", text)]).unwrap_err().remove(0);
             assert!(error.fault.to_string().contains(word), "{}", error.fault);

@@ -2,7 +2,8 @@
 //!
 //! A candidate (the cell of a peak, saddle or basin) is followed by Newton's method along those principal directions in
 //! which the density is curved. Along a rim of constant height nothing is curved, and the point stays on the rim where
-//! it was. On a plane where the derivative jumps from rising to falling (or back) the point stays on the plane.
+//! it was. On a plane where the derivative jumps from rising to falling (or back) the point stays on the plane; in an
+//! outermost cell, where the density rises toward the end of the range, as at a wall, it is at the end.
 
 use super::FeatureKind;
 use super::field::{Curvature, Field, Jet, Stencil};
@@ -35,8 +36,10 @@ pub(super) struct Critical {
     pub(super) position: Vec<f64>,
     /// Value and derivatives there.
     pub(super) jet: Jet,
-    /// Whether it lies on a plane with a jump of the derivative, one value an axis.
+    /// Whether it lies on a plane with a jump of the derivative, or at an end of the range, one value an axis.
     pinned: Vec<bool>,
+    /// Whether it lies at an end of a range, toward which the density rises.
+    pub(super) is_at_end: bool,
     /// Widths of the cell, in units of the axes.
     cell: [f64; 2],
     /// The same in units of the coordinates.
@@ -55,18 +58,25 @@ impl Critical {
     ) -> Option<Self> {
         let mut position = centre.to_vec();
         let pinned: Vec<bool> = (0..centre.len())
-            .map(|k| match field.plane_near(k, centre[k]) {
-                Some(plane) => {
-                    position[k] = plane;
-                    let holds = holds(field, &position, k, kind, values);
-                    if !holds {
-                        position[k] = centre[k];
-                    }
-                    holds
-                }
-                None => false,
+            .map(|k| {
+                let mut holds_at = |at: Option<f64>, holds: &dyn Fn(&[f64]) -> bool| {
+                    at.is_some_and(|at| {
+                        position[k] = at;
+                        let holds = holds(&position);
+                        if !holds {
+                            position[k] = centre[k];
+                        }
+                        holds
+                    })
+                };
+                let end = field.end_near(k, centre[k]);
+                let plane = field.plane_near(k, centre[k]);
+                holds_at(end, &|at| rises_to_end(field, at, k, kind, values))
+                    || holds_at(plane, &|at| holds(field, at, k, kind, values))
             })
             .collect();
+        let is_at_end = (0..centre.len())
+            .any(|k| pinned[k] && field.end_near(k, centre[k]) == Some(position[k]));
         let mut reach = None;
         for _ in 0..MOST_STEPS {
             let jet = field.stencil(&position, 0)?.jet(values);
@@ -99,6 +109,7 @@ impl Critical {
         Some(Self {
             cell,
             width,
+            is_at_end,
             jet: fine.jet(values),
             rough: field.stencil(&position, 1)?,
             fine,
@@ -250,6 +261,21 @@ fn holds(field: &Field<'_>, at: &[f64], k: usize, kind: FeatureKind, values: &[f
         FeatureKind::Crater => below < 0.0 && above > 0.0,
         FeatureKind::Valley => below * above < 0.0,
     }
+}
+
+/// Whether the density rises toward an end of the range, where a peak and the pass from one peak to another are then
+/// highest. A basin that is open to the end is no crater.
+fn rises_to_end(
+    field: &Field<'_>,
+    at: &[f64],
+    k: usize,
+    kind: FeatureKind,
+    values: &[f64],
+) -> bool {
+    let is_upper = at[k] > field.axes()[k].from();
+    let slope = field.stencil(at, 0).map(|one| one.jet(values).first[k]);
+    let outward = slope.map(|slope| if is_upper { slope } else { -slope });
+    kind != FeatureKind::Crater && outward.is_some_and(|outward| outward > 0.0)
 }
 
 /// How far along each axis, in its units, a critical point may lie from the cell that shows it. Along a crest or a

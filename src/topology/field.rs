@@ -182,6 +182,17 @@ impl<'a> Field<'a> {
         near.next().map(|kink| kink.at)
     }
 
+    /// The end of the range of an axis in whose outermost cell a coordinate lies.
+    pub(super) fn end_near(&self, k: usize, at: f64) -> Option<f64> {
+        let axis = &self.axes()[k];
+        let last = axis.count() - 1;
+        match axis.find(at)? {
+            0 => Some(axis.from()),
+            cell if cell == last => Some(axis.to()),
+            _ => None,
+        }
+    }
+
     /// The interval of an axis about a coordinate that lies in the range and on one side of every such plane.
     pub(super) fn side(&self, k: usize, at: f64, reach: f64) -> (f64, f64) {
         let axis = &self.axes()[k];

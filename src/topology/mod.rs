@@ -1,6 +1,7 @@
 //! What a density looks like: its significant peaks and craters, and the signature they make.
 
 mod between;
+mod border;
 mod candidate;
 mod closed;
 mod critical;
@@ -21,6 +22,7 @@ mod shape;
 mod signature;
 mod significance;
 mod surroundings;
+mod valley;
 
 #[cfg(test)]
 mod analytic_tests;
@@ -30,6 +32,7 @@ mod calibration_tests;
 mod invariance_tests;
 
 pub(crate) use between::Between;
+pub(crate) use border::{basin, crest};
 pub use detector::PersistenceDetector;
 pub use indicator::{Flank, Indicator, IndicatorKind};
 pub(crate) use indicator::{Step, born_at_kink, is_clear, peaks_at_ends, two_sided_limit};

@@ -12,7 +12,9 @@
 use std::ops::Range;
 
 use super::FeatureKind;
+use super::critical::Critical;
 use super::extremum::{Vertex, extremum};
+use super::field::Field;
 use super::quadratic::{Scale, basis, fit, principal_directions};
 use crate::density::EstimatedDensity;
 use crate::space::Axis;
@@ -37,6 +39,9 @@ pub(super) fn refine(estimated: &EstimatedDensity, cell: usize, kind: FeatureKin
     let windows: Vec<Range<usize>> = (0..axes.len())
         .map(|axis| window(estimated, &at, axis))
         .collect();
+    if let Some(at_end) = at_end(estimated, cell, kind) {
+        return at_end;
+    }
     let place = stationary_point(estimated, &at, &windows, kind).unwrap_or_else(|| Vertex {
         position: axes
             .iter()
@@ -46,6 +51,21 @@ pub(super) fn refine(estimated: &EstimatedDensity, cell: usize, kind: FeatureKin
         density: estimated.density.values[cell],
     });
     extremum(estimated, cell, place.position[0], kind).unwrap_or(place)
+}
+
+/// The feature of an outermost cell at the end of the range, where a density without noise rises toward it.
+fn at_end(estimated: &EstimatedDensity, cell: usize, kind: FeatureKind) -> Option<Vertex> {
+    if estimated.is_noisy() {
+        return None;
+    }
+    let field = Field::new(estimated)?;
+    let centre = field.centre(cell);
+    (0..centre.len()).find_map(|k| field.end_near(k, centre[k]))?;
+    let critical = Critical::near(&field, &centre, kind, field.values())?;
+    critical.is_at_end.then(|| Vertex {
+        density: critical.jet.value,
+        position: critical.position,
+    })
 }
 
 /// Cells of one axis that the fit around the cell `at` takes in.
@@ -231,13 +251,11 @@ mod tests {
         let place = refine(&falling, 0, FeatureKind::Peak);
         assert_eq!(place.position, vec![0.0]);
         assert!((place.density - (1.0 - 0.125)).abs() < 1e-12);
-        // Convex from the end: no vertex.
+        // Convex from the end, 3 e^{-3x}: no vertex.
         let convex = averages(&axis, |x| -(-3.0 * x).exp());
         let place = refine(&convex, 0, FeatureKind::Peak);
-        assert_eq!(
-            (place.position[0], place.density),
-            (axis.centre(0), convex.density.values[0])
-        );
+        assert_eq!(place.position, vec![0.0]);
+        assert!((place.density - 3.0).abs() < 1e-5, "{}", place.density);
         // Two equal highest cells: the face between them.
         let mut values = vec![0.0; 10];
         values[4..6].fill(1.0);

@@ -8,7 +8,7 @@
 use std::collections::BTreeSet;
 
 use super::enclosure::Enclosure;
-use super::field::{Field, Stencil};
+use super::field::{Field, Jet, Stencil};
 use crate::density::EstimatedDensity;
 
 /// Rays from the point inside.
@@ -130,7 +130,9 @@ fn crest(
             Some(radius) => radius,
             None => highest_on_ray(field, rim, &|s| at(direction, s), cell, values)?,
         };
-        let s = top_of_ray(field, &|s| at(direction, s), direction, start, cell)?;
+        let place = |s| at(direction, s);
+        let jet = |at: &[f64]| field.jet(at);
+        let s = top_of_ray(field, &place, direction, (start, cell), &jet)?;
         if radius.is_some_and(|radius: f64| (s - radius).abs() > LONGEST_JUMP * cell) {
             return None;
         }
@@ -171,19 +173,19 @@ fn highest_on_ray(
         .map(|(s, _)| s)
 }
 
-/// The maximum along a ray, by Newton's method.
-fn top_of_ray(
+/// The maximum along a ray beside the place that it starts at, by Newton's method.
+pub(super) fn top_of_ray(
     field: &Field<'_>,
     at: &dyn Fn(f64) -> Vec<f64>,
     direction: [f64; 2],
-    start: f64,
-    cell: f64,
+    (start, cell): (f64, f64),
+    jet: &dyn Fn(&[f64]) -> Option<Jet>,
 ) -> Option<f64> {
     let mut s = start;
     for _ in 0..MOST_STEPS {
         let position = at(s);
         field.cell_at(&position)?;
-        let jet = field.jet(&position)?;
+        let jet = jet(&position)?;
         let (slope, bend) = (jet.slope(direction), jet.curvature(direction));
         // Where it is not curved downward the top lies uphill.
         let step = if bend < 0.0 {

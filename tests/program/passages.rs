@@ -325,6 +325,85 @@ joint = []
 draw = []
 "#;
 
+/// x has two wells and y one; x and y are a circle that grows by `a` and shrinks by its own square.
+const IN_THE_PLANE: &str = r#"
+[system.equations]
+x = "DRIFT_X"
+y = "DRIFT_Y"
+[system.noise]
+x = "s"
+y = "s"
+[system.parameters]
+a = 1.0
+s = 0.6
+[sweep]
+parameter = "a"
+from = 0.8
+to = 1.2
+points = 2
+[cells]
+x = { from = -2.6, to = 2.6, count = 64 }
+y = { from = -2.6, to = 2.6, count = 60 }
+[passage]
+found = { FOUND }
+typed = { TYPED }
+[detect]
+marginals = []
+joint = [["x", "y"]]
+[figures]
+draw = []
+"#;
+
+#[test]
+fn basins_of_joint_densities_and_rings_end_where_valleys_and_crests_are() {
+    let wells = ["a*x - x^3", "-y"];
+    let circle = ["a*x - y - x*(x^2 + y^2)", "a*y + x - y*(x^2 + y^2)"];
+    let cases = [
+        (
+            wells,
+            "from = \"peak 1 of xy\", to = \"peak 2 of xy\"",
+            "from = \"x < 0\", to = \"x > 0\"",
+        ),
+        (
+            wells,
+            "start = { x = 0.9, y = 0.2 }, until = \"peak 1 of xy\"",
+            "start = { x = 0.9, y = 0.2 }, until = \"x < 0\"",
+        ),
+        (
+            circle,
+            "start = { x = 0, y = 0.1 }, until = \"outside ring of xy\"",
+            "start = { x = 0, y = 0.1 }, until = \"x^2 + y^2 > a\"",
+        ),
+        (
+            circle,
+            "start = { x = 1.6, y = 0.1 }, until = \"inside ring of xy\"",
+            "start = { x = 1.6, y = 0.1 }, until = \"x^2 + y^2 < a\"",
+        ),
+    ];
+    for ([x, y], found, typed) in cases {
+        let room = Room::new();
+        let file = IN_THE_PLANE.replace("DRIFT_X", x).replace("DRIFT_Y", y);
+        let file = file.replace("FOUND", found).replace("TYPED", typed);
+        room.write("a.toml", &file);
+        room.done("sweep a.toml --out run");
+        for row in &room.table("run/points.csv").0 {
+            assert!(!row["findings"].contains("passage"), "{}", &row["findings"]);
+            let [value, error, exact, of_exact] = [
+                "found_mean",
+                "found_mean_error",
+                "typed_mean",
+                "typed_mean_error",
+            ]
+            .map(|name| row.number(name));
+            assert!(
+                (value - exact).abs() <= error + of_exact,
+                "{found}: {value} ± {error}, {exact} ± {of_exact}"
+            );
+            assert!(error < 0.05 * value, "{found}: {value} ± {error}");
+        }
+    }
+}
+
 #[test]
 fn basins_of_peaks_end_at_the_valley_at_every_value() {
     let room = Room::new();
@@ -367,22 +446,28 @@ fn basins_of_peaks_end_at_the_valley_at_every_value() {
         (
             "peak 2 of x",
             "peak 2 of z",
-            ["a basin is `peak N of AXIS`", "write `peak 1 of x`"],
+            [
+                "a region that is found is `peak N of AXIS`",
+                "write `peak 1 of x`",
+            ],
         ),
         (
             "marginals = [\"x\"]",
             "marginals = [\"y\"]",
-            ["whose density is not watched", "detect.marginals"],
+            ["which is not watched", "detect.marginals"],
         ),
         (
             "from = \"peak 1 of x\", to = \"right\"",
             "from = \"peak 1 of x\", to = \"right\", fields = [\"committor\"]",
-            ["committor between basins", "give inequalities"],
+            [
+                "committor between regions that are found",
+                "give inequalities",
+            ],
         ),
         (
             "until = \"peak 1 of x\"",
             "until = [\"peak 1 of x\", \"x > 2\"]",
-            ["among several regions", "the basin alone"],
+            ["among several regions", "the found region alone"],
         ),
         (
             "to = \"right\"",
@@ -392,7 +477,7 @@ fn basins_of_peaks_end_at_the_valley_at_every_value() {
         (
             "[figures]",
             "[method]\nkind = \"monte-carlo\"\n[figures]",
-            ["found by `generator` alone", "give an inequality"],
+            ["which `generator` does alone", "give an inequality"],
         ),
     ] {
         assert_eq!(BASINS.matches(old).count(), 1, "{old}");

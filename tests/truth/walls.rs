@@ -122,6 +122,34 @@ fn ornstein_uhlenbeck_on_a_half_plane_is_half_of_a_normal_density() {
 }
 
 #[test]
+fn the_share_of_the_time_beside_a_wall_is_that_of_half_of_a_normal_density() {
+    let beyond = |x: f64| statrs::function::erf::erfc(x - 0.3);
+    for count in [40, 60, 90] {
+        let rest = format!(
+            "[cells]\nx = {{ from = -0.2, to = 4.5, count = {count} }}\ny = 40\n[visits]\nlow = \"x > 0\"\nhigh = \"x > 0.4\"\n"
+        );
+        let independent = HALF_PLANE.replace("0.5 x - y", "-y");
+        let sweep = sweep(&independent, &rest);
+        let options = GeneratorMethodOptions::default();
+        let source = GeneratorSource::new(&sweep.problem, &options).unwrap();
+        let mut session = source.open(&Cancellation::new());
+        let measures = session.solve(0.5).unwrap().report.measures;
+        holds(
+            &measures,
+            "low_time_share",
+            beyond(0.0) / beyond(-0.2),
+            1e-3,
+        );
+        holds(
+            &measures,
+            "high_time_share",
+            beyond(0.4) / beyond(-0.2),
+            1e-3,
+        );
+    }
+}
+
+#[test]
 fn between_four_walls_two_independent_axes_stay_independent() {
     let system = r#"
 [system.equations]

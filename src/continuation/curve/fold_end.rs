@@ -1,6 +1,6 @@
 //! Where the fold of a marginal ends inside the box: in a cusp, at a degenerate split of the centre, or at a kink. Its
 //! last points tell, since both parameters are smooth functions of where the fold is in the density, through such a
-//! point and beyond.
+//! point and beyond. Where they do not, points within a few cells of the centre are in doubt.
 
 use super::CurveStart;
 use super::cusp::cusp;
@@ -110,6 +110,9 @@ pub(super) fn add_ends(
             Some((point(&found, last, is_first, folds), found, left_out))
         };
         let Some((point, beyond, left_out)) = ends_here.then(beyond).flatten() else {
+            if ends_here {
+                doubt_end(points, (unsure, is_first));
+            }
             continue;
         };
         let (at, kind, place) = beyond.branch;
@@ -137,6 +140,16 @@ pub(super) fn add_ends(
         near.for_each(|(_, one)| widen(one, scatter, folds.tolerance));
     }
     branches
+}
+
+/// Doubts so many points at an end of which nobody knows where it is: what was followed there may be the centre itself.
+fn doubt_end(points: &mut [CurvePoint], (unsure, is_first): (usize, bool)) {
+    let first = if is_first { 0 } else { points.len() - unsure };
+    for point in &mut points[first..first + unsure] {
+        if !point.doubts.contains(&Doubt::FewCellsApart) {
+            point.doubts.push(Doubt::FewCellsApart);
+        }
+    }
 }
 
 /// A point with a part more of its error.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::basins::{MOVED, with_intervals};
+use super::basins::{MOVED, with_inequalities};
 use crate::cancellation::Cancellation;
 use crate::continuation::{Finding, Measure, PassageFault, SolveReport, StateField};
 use crate::density::EstimatedDensity;
@@ -174,7 +174,7 @@ impl Asked<'_> {
     ) -> Answer<Vec<Measure>> {
         let mut all = Vec::new();
         for moved in MOVED {
-            let Some(typed) = with_intervals(question, model, watched, moved) else {
+            let Some(typed) = with_inequalities(question, model, watched, moved) else {
                 return Ok(Err(PassageFault::NoPeak));
             };
             match self.numbers(&typed, memory)? {

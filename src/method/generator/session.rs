@@ -21,7 +21,7 @@ use super::trail::Trail;
 use crate::cancellation::Cancellation;
 use crate::continuation::{Solution, SolveReport};
 use crate::density::EstimatedDensity;
-use crate::generator::{LineRates, MESH_DEPTH, MESH_PLACES, Reach};
+use crate::generator::{LineRates, MESH_DEPTH, MESH_PLACES, Reach, normalised_to_walls};
 use crate::method::MethodError;
 use crate::method::neighbours::Neighbours;
 use crate::method::watched::planes;
@@ -128,11 +128,15 @@ impl GeneratorSession {
             .as_ref()
             .and_then(|(trail, errors)| Some((trail.newest()?, errors)));
         let planes = planes(&self.source.kinked);
-        let known = newest.map(|(newest, errors)| KnownDensity {
-            unknowns: &newest.mass,
+        let (system, space) = (solved.system.as_ref(), self.source.problem.space());
+        let to_walls = newest.map(|(newest, _)| normalised_to_walls(system, space, &newest.mass));
+        let pairs = newest.zip(to_walls.as_ref());
+        let known = pairs.map(|((_, errors), (unknowns, changed))| KnownDensity {
+            unknowns,
             changes: Some(&errors.changes),
             returning: errors.cut_off.returning.as_deref(),
-            beyond: errors.cut_off.beyond,
+            // What walls change of all values alike is made good to fourth order, and taken for its own error.
+            beyond: errors.cut_off.beyond + changed,
             planes: &planes,
         });
         let Solution {

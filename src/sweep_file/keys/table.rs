@@ -187,7 +187,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "A formula whose mean and standard deviation are columns of `points.csv`, for example `power = \"y^2\"`."),
     key("regions.<region>", Kind::Text, Rule("none"),
         entries!(regions),
-        "A region of the state by inequalities, for example `left = \"x < -0.2 and y > 0\"`, joined by `and`, `or`, `not`; names of other regions may stand in it. Or the basin of a peak of a watched density: `peak 2 of x`, the second from the left."),
+        "A region of the state by inequalities, for example `left = \"x < -0.2 and y > 0\"`, joined by `and`, `or`, `not`; names of other regions may stand in it. Or what is found in a watched density: the basin of a peak, as `peak 2 of x` (the second from the left) or `peak 1 of xy`, and `inside ring of xy` or `outside ring of xy`."),
     key("visits.<visits>", Kind::Text, Rule("none"),
         entries!(visits),
         "A region, by its name or an inequality such as `high = \"x > 1\"`, of which `points.csv` tells the share of the time that is spent in it, how often it is entered per unit of time, and how long a visit lasts."),

@@ -15,10 +15,13 @@ pub(super) struct Given {
     pub(super) is_joined: bool,
 }
 
-/// Whether a region is the basin of a peak, as `peak 2 of x` is.
+/// Whether a region is found in a density, as `peak 2 of x` and `inside ring of xy` are.
 pub(super) fn is_basin(text: &str) -> bool {
     let words: Vec<&str> = text.split_whitespace().collect();
-    matches!(words[..], ["peak", _, "of", _])
+    matches!(
+        words[..],
+        ["peak", _, "of", _] | ["inside" | "outside", "ring", "of", _]
+    )
 }
 
 /// The number of a region that a passage names, or gives as an inequality.
@@ -86,10 +89,10 @@ pub(super) fn read_all(
         Ok(read) => return Some(read),
         Err(errors) => errors,
     };
-    let own = errors
+    let (own, joined): (Vec<_>, Vec<_>) = errors
         .into_iter()
-        .filter(|error| !given[error.index].is_joined);
-    for error in own {
+        .partition(|error| !given[error.index].is_joined);
+    for error in if own.is_empty() { joined } else { own } {
         let one = (&given[error.index], &given[..named]);
         let diagnostic = diagnostic(reader, one, &error);
         reader.report(diagnostic);

@@ -79,8 +79,9 @@ pub(super) fn fields(
             }
             (FieldKind::Committor, Some(from)) => {
                 if is_basin(&given[from].text) || is_basin(&given[until].text) {
-                    let title =
-                        format!("passage `{name}` asks for a committor between basins of peaks");
+                    let title = format!(
+                        "passage `{name}` asks for a committor between regions that are found in a density"
+                    );
                     refuse(reader, name, title, "give inequalities as `from` and `to`");
                     return None;
                 }
@@ -138,7 +139,9 @@ pub(super) fn transitions(
                 return Some(either(reader, given, name, [from, until]));
             }
             (
-                format!("passage `{name}` asks for transitions between basins of peaks"),
+                format!(
+                    "passage `{name}` asks for transitions between regions that are found in a density"
+                ),
                 "give inequalities as `from` and `to`",
             )
         }

@@ -8,7 +8,7 @@ use crate::sweep_file::diagnostic::Diagnostic;
 use crate::sweep_file::draft::{Draft, MethodKind, PassageDraft};
 use crate::sweep_file::names::quotable;
 use crate::sweep_file::reader::Reader;
-use crate::system::{Model, PassageQuestion, PassageStart, Region};
+use crate::system::{Model, PassageQuestion, PassageStart, Region, joined_names};
 
 /// The word for a start that is spread as the steady state is.
 pub(super) const DENSITY: &str = "density";
@@ -84,7 +84,7 @@ pub(super) fn read(
     (read.into_iter().take(named).collect(), questions)
 }
 
-/// The basin of a peak is known to the generator at each value, from a density that is watched.
+/// What is found in a density is known to the generator at each value, where that is watched.
 fn check_basins(
     reader: &mut Reader<'_>,
     (draft, model): (&Draft, &Model),
@@ -100,11 +100,17 @@ fn check_basins(
         .flatten()
         .filter_map(Region::basin);
     for basin in basins {
-        let (name, axis) = (&question.name, &model.axes[basin.axis].name);
-        let is_watched = watched.contains(&Observable::Marginal(basin.axis));
+        let (first, second) = basin.axes;
+        let names: Vec<&str> = [Some(first), second]
+            .into_iter()
+            .flatten()
+            .map(|axis| model.axes[axis].name.as_str())
+            .collect();
+        let (name, density) = (&question.name, joined_names(&names));
+        let is_watched = watched.contains(&basin.observable());
         let (title, remedy) = if draft.method.kind != MethodKind::Generator {
             let title = format!(
-                "passage `{name}` is to the basin of a peak, which is found by `generator` alone"
+                "passage `{name}` has a region that is found in a density, which `generator` does alone"
             );
             (
                 title,
@@ -112,7 +118,7 @@ fn check_basins(
             )
         } else if !question.fields.is_empty() || question.switching {
             let title = format!(
-                "passage `{name}` has the basin of a peak, and asks for fields or rates between states"
+                "passage `{name}` has a region that is found in a density, and asks for fields or rates between states"
             );
             (
                 title,
@@ -120,9 +126,13 @@ fn check_basins(
             )
         } else if !is_watched {
             let title = format!(
-                "passage `{name}` has the basin of a peak of `{axis}`, whose density is not watched"
+                "passage `{name}` has a region that is found in the density of `{density}`, which is not watched"
             );
-            (title, format!("add \"{axis}\" to `detect.marginals`"))
+            let remedy = match names[..] {
+                [one, other] => format!("add [\"{one}\", \"{other}\"] to `detect.joint`"),
+                _ => format!("add \"{density}\" to `detect.marginals`"),
+            };
+            (title, remedy)
         } else {
             continue;
         };
@@ -225,8 +235,15 @@ fn ends(
         texts.collect::<Vec<_>>().join(" or ")
     });
     if exits.iter().any(|&part| is_basin(&given[part].text)) {
-        let title = format!("passage `{name}` has the basin of a peak among several regions");
-        refuse(reader, name, title, "give inequalities, or the basin alone");
+        let title = format!(
+            "passage `{name}` has a region that is found in a density among several regions"
+        );
+        refuse(
+            reader,
+            name,
+            title,
+            "give inequalities, or the found region alone",
+        );
         return None;
     }
     let (word, until) = match (either.as_ref().or(passage.until.as_ref()), &passage.to) {

@@ -1,6 +1,6 @@
 //! Regions of which a file wants to know how often they are visited.
 
-use super::given_regions::{is_basin, named, read_all, region_at};
+use super::given_regions::{Given, is_basin, named, read_all, region_at};
 use crate::formula::language::check_name;
 use crate::sweep_file::diagnostic::Diagnostic;
 use crate::sweep_file::draft::{Draft, MethodKind};
@@ -39,8 +39,8 @@ pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, model: &Model) -> Vec
             let remedy =
                 "take letters, digits and `_`, a letter first: columns are called after it";
             refuse(reader, name, title, remedy);
-        } else if is_basin(text) {
-            let title = format!("visits `{name}` are of the basin of a peak");
+        } else if is_found(&given, text) {
+            let title = format!("visits `{name}` are of a region that is found in a density");
             refuse(
                 reader,
                 name,
@@ -71,6 +71,12 @@ pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, model: &Model) -> Vec
             outside: read[outside].clone(),
         });
     questions.collect()
+}
+
+/// Whether a region, given by its name or as an inequality, is found in a density.
+fn is_found(given: &[Given], text: &str) -> bool {
+    let named = given.iter().find(|one| one.name == text.trim());
+    is_basin(named.map_or(text, |one| one.text.as_str()))
 }
 
 fn refuse(reader: &mut Reader<'_>, name: &str, title: String, remedy: &str) {

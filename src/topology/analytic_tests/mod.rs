@@ -1,6 +1,7 @@
 //! The detector on densities whose features are known exactly.
 
 mod births;
+mod ends;
 mod plane;
 mod turns;
 

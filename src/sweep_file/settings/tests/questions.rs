@@ -111,7 +111,7 @@ fn transitions_are_between_two_regions_and_reactive_fields_have_their_numbers() 
     );
     assert!(state.contains("not from one region to another"), "{state}");
     let basin = asked.replace("x < 1", "peak 1 of x");
-    assert!(refused(&basin, &[]).contains("between basins of peaks"));
+    assert!(refused(&basin, &[]).contains("between regions that are found"));
 }
 
 /// A half line.

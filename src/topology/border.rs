@@ -1,0 +1,403 @@
+//! Borders of what is found in a joint density: of the basin of a peak, along the valleys that part it from other
+//! peaks, and of the inside of a ring, along its crest.
+//!
+//! A valley is followed from its saddle downhill on either side, in units of the standard deviations of the axes; a
+//! crest is looked for on rays from a point inside. Either is a function: of the distance along the valley, and of the
+//! angle around the point. Beyond its ends a valley goes on as it went last.
+
+use std::f64::consts::{PI, TAU};
+
+use super::field::{Field, Jet};
+use super::rim::top_of_ray;
+use super::valley::{Node, Trace, Valley, between};
+use super::{Detection, Feature, FeatureKind, Verdict};
+use crate::density::EstimatedDensity;
+
+/// Rays on which a crest is looked for.
+const RAYS: usize = 60;
+
+/// Points a cell at which the first ray is looked at.
+const POINTS_A_CELL: f64 = 2.0;
+
+/// Share of the mass of a basin that may lie in cells which climb to another peak than the border says.
+const MISPLACED: f64 = 0.05;
+
+/// A border as a function, with the side on which what it bounds lies.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Border {
+    /// The saddle, or the point inside a ring.
+    origin: [f64; 2],
+    /// Units of the two coordinates.
+    units: [f64; 2],
+    /// The direction of a valley at its saddle, in these units; none of a crest, which runs around the origin.
+    direction: Option<[f64; 2]>,
+    nodes: Vec<Node>,
+    /// 1 where what is bounded lies below the function, else -1.
+    side: f64,
+}
+
+impl Border {
+    /// The border as an inequality of two coordinates, moved outward by so many of its errors.
+    pub(crate) fn inequality(&self, [x, y]: [&str; 2], moved: f64) -> String {
+        let part = |k: usize, name: &str| {
+            let (origin, unit) = (self.origin[k], self.units[k]);
+            format!("(({name} - ({origin:?}))/{unit:?})")
+        };
+        let (x, y) = (part(0, x), part(1, y));
+        let [along, across] = match self.direction {
+            Some([a, b]) => [
+                format!("(({a:?})*{x} + ({b:?})*{y})"),
+                format!("(({a:?})*{y} - ({b:?})*{x})"),
+            ],
+            None => [format!("atan2({y}, {x})"), format!("hypot({x}, {y})")],
+        };
+        let nodes: Vec<(f64, f64)> = (self.nodes.iter())
+            .map(|node| (node.along, node.across + self.side * moved * node.error))
+            .collect();
+        let function = broken_line(&along, &nodes);
+        let sign = if self.side > 0.0 { '<' } else { '>' };
+        format!("{across} {sign} {function}")
+    }
+
+    /// The same for what lies on the other side.
+    pub(crate) fn other_side(mut self) -> Self {
+        self.side = -self.side;
+        self
+    }
+
+    /// Whether a point lies on the side of what is bounded.
+    fn holds(&self, at: [f64; 2]) -> bool {
+        let [x, y] = [0, 1].map(|k| (at[k] - self.origin[k]) / self.units[k]);
+        let (along, across) = match self.direction {
+            Some([a, b]) => (a * x + b * y, a * y - b * x),
+            None => (y.atan2(x), x.hypot(y)),
+        };
+        self.side * (across - between(&self.nodes, along, |node| node.across)) < 0.0
+    }
+}
+
+/// A function that is linear between nodes, and goes on beyond them as it went last, as a formula.
+fn broken_line(along: &str, nodes: &[(f64, f64)]) -> String {
+    let slope = |pair: &[(f64, f64)]| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0);
+    let slopes: Vec<f64> = nodes.windows(2).map(slope).collect();
+    let (Some(&(from, value)), Some(first), Some(last)) =
+        (nodes.first(), slopes.first(), slopes.last())
+    else {
+        return nodes
+            .first()
+            .map_or_else(|| "0".to_owned(), |node| format!("({:?})", node.1));
+    };
+    // Every |u - u_i| bends the line by twice its factor; the mean of the first and the last slope is left.
+    let bends: Vec<(f64, f64)> = (nodes[1..].iter().zip(slopes.windows(2)))
+        .map(|(node, pair)| (node.0, 0.5 * (pair[1] - pair[0])))
+        .collect();
+    let mean = 0.5 * (first + last);
+    let at_first: f64 = bends
+        .iter()
+        .map(|(at, bend)| bend * (from - at).abs())
+        .sum();
+    let constant = value - mean * from - at_first;
+    let mut text = format!("({constant:?}) + ({mean:?})*{along}");
+    for (at, bend) in bends.iter().filter(|(_, bend)| *bend != 0.0) {
+        text.push_str(&format!(" + ({bend:?})*abs({along} - ({at:?}))"));
+    }
+    text
+}
+
+/// The borders between the basin of a peak of a joint density, counted from 1 in the order of their first coordinates,
+/// and those of others; `None` without the peak, without another one, and where what lies within the borders is not
+/// what climbs to the peak.
+pub(crate) fn basin(
+    density: &EstimatedDensity,
+    detection: &Detection,
+    peak: usize,
+) -> Option<Vec<Border>> {
+    let field = Field::new(density)?;
+    let trace = Trace::new(&field, density)?;
+    let peaks = peaks(detection);
+    let own = peak.checked_sub(1).filter(|&own| own < peaks.len())?;
+    let climbs = trace.climbs(&peaks);
+    let valleys = trace.valleys(&climbs);
+    let mut borders = Vec::new();
+    for valley in valleys.into_iter().filter(|one| one.parts.contains(&own)) {
+        let Valley {
+            origin,
+            direction,
+            nodes,
+            ..
+        } = valley;
+        let (units, direction) = (trace.units, Some(direction));
+        let mut border = Border {
+            origin,
+            units,
+            direction,
+            nodes,
+            side: 1.0,
+        };
+        let at = peaks[own];
+        if !border.holds(at) {
+            border = border.other_side();
+        }
+        borders.push(border);
+    }
+    if borders.is_empty() {
+        return None;
+    }
+    let masses = density.density.masses();
+    let (mut whole, mut misplaced) = (0.0, 0.0);
+    for (cell, mass) in masses.iter().enumerate() {
+        let centre = field.centre(cell);
+        let is_within = borders.iter().all(|one| one.holds([centre[0], centre[1]]));
+        let is_own = climbs[cell] == Some(own);
+        whole += if is_own { *mass } else { 0.0 };
+        misplaced += if is_own == is_within { 0.0 } else { *mass };
+    }
+    (misplaced <= MISPLACED * whole).then_some(borders)
+}
+
+/// Places of the peaks that are there, in the order of their coordinates.
+fn peaks(detection: &Detection) -> Vec<[f64; 2]> {
+    let mut all: Vec<[f64; 2]> = of_kind(detection, FeatureKind::Peak)
+        .filter_map(|peak| peak.position.get(..2)?.try_into().ok())
+        .collect();
+    all.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    all
+}
+
+fn of_kind(detection: &Detection, kind: FeatureKind) -> impl Iterator<Item = &Feature> {
+    let present = detection.features.iter();
+    present.filter(move |one| one.kind == kind && one.verdict == Verdict::Present)
+}
+
+/// The crest around the crater of a joint density, whose inside it bounds; `None` without a crater, with several, and
+/// where the crest is not met once on every ray from it.
+pub(crate) fn crest(density: &EstimatedDensity, detection: &Detection) -> Option<Border> {
+    let field = Field::new(density)?;
+    let mut craters = of_kind(detection, FeatureKind::Crater);
+    let (crater, None) = (craters.next()?, craters.next()) else {
+        return None;
+    };
+    let origin: [f64; 2] = crater.position.get(..2)?.try_into().ok()?;
+    let values = &density.density.values;
+    let second = density.variants.second_scheme();
+    let looks = [
+        Some((0, values.as_slice())),
+        Some((1, values.as_slice())),
+        second.map(|one| (0, one)),
+    ];
+    let mut radii = Vec::new();
+    for (level, values) in looks.into_iter().flatten() {
+        let jet = |at: &[f64]| Some(field.stencil(at, level)?.jet(values));
+        radii.push(radii_of(&field, origin, values, &jet)?);
+    }
+    let nodes = (0..=RAYS).map(|ray| {
+        let own = radii[0][ray % RAYS];
+        let off = radii[1..]
+            .iter()
+            .map(|other| (other[ray % RAYS] - own).abs());
+        Node {
+            along: angle(ray),
+            across: own,
+            error: off.sum(),
+        }
+    });
+    let nodes = nodes.collect();
+    let units = [field.unit(0), field.unit(1)];
+    Some(Border {
+        origin,
+        units,
+        direction: None,
+        nodes,
+        side: 1.0,
+    })
+}
+
+fn angle(ray: usize) -> f64 {
+    -PI + TAU * ray as f64 / RAYS as f64
+}
+
+/// The distance of the crest on each ray, in units of the ranges.
+fn radii_of(
+    field: &Field<'_>,
+    origin: [f64; 2],
+    values: &[f64],
+    jet: &dyn Fn(&[f64]) -> Option<Jet>,
+) -> Option<Vec<f64>> {
+    let width = |k: usize| field.cell_width(k, origin[k]);
+    let cell = width(0).max(width(1));
+    let mut radii: Vec<f64> = Vec::new();
+    for ray in 0..RAYS {
+        let direction = [angle(ray).cos(), angle(ray).sin()];
+        let at = |s: f64| -> Vec<f64> {
+            (0..2)
+                .map(|k| origin[k] + s * direction[k] * field.unit(k))
+                .collect()
+        };
+        let points = (1..).map(|point| f64::from(point) * cell / POINTS_A_CELL);
+        let heights = points.map_while(|s| Some((s, values[field.cell_at(&at(s))?])));
+        let (start, _) = heights.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        radii.push(top_of_ray(field, &at, direction, (start, cell), jet)?);
+    }
+    Some(radii)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::density::{Density, Observable};
+    use crate::space::Axis;
+    use crate::topology::{DetectOptions, Detector, PersistenceDetector};
+
+    /// A density with these values at the centres of cells, and what is detected in it.
+    fn detected(log: impl Fn(f64, f64) -> f64, count: usize) -> (EstimatedDensity, Detection) {
+        let axes = vec![
+            Axis::uniform(-3.0, 3.0, count).unwrap(),
+            Axis::uniform(-2.5, 2.5, count).unwrap(),
+        ];
+        let [first, second] = &axes[..] else {
+            unreachable!()
+        };
+        let rows = (0..count).flat_map(|i| (0..count).map(move |j| (i, j)));
+        let values = rows.map(|(i, j)| log(first.centre(i), second.centre(j)).exp());
+        let values: Vec<f64> = values.collect();
+        let mass: f64 = values.iter().sum::<f64>() * first.width(0) * second.width(0);
+        let values = values.into_iter().map(|one| one / mass).collect();
+        let density = EstimatedDensity::new(Observable::Joint(0, 1), Density { axes, values });
+        let detection = PersistenceDetector::new(DetectOptions::default(), 1).detect(&density);
+        (density, detection)
+    }
+
+    /// Two wells whose valley is curved: ln p = -2 (x² - 1)² + 0.2 x - y² + 0.8 x y².
+    fn curved(x: f64, y: f64) -> f64 {
+        -2.0 * (x * x - 1.0).powi(2) + 0.2 * x - y * y * (1.0 - 0.8 * (x + 0.3).tanh())
+    }
+
+    /// The place along x of the valley at a height y, downhill from its saddle, by steps of 1e-4.
+    fn valley_at(y: f64, units: [f64; 2]) -> f64 {
+        let slope = |x: f64, y: f64| {
+            let h = 1e-5;
+            [
+                (curved(x + h, y) - curved(x - h, y)) / (2.0 * h) * units[0],
+                (curved(x, y + h) - curved(x, y - h)) / (2.0 * h) * units[1],
+            ]
+        };
+        let mut saddle = -0.02;
+        for _ in 0..30 {
+            let h = 1e-4;
+            let [up, own, down] = [saddle + h, saddle, saddle - h].map(|x| slope(x, 0.0)[0]);
+            saddle -= own * 2.0 * h / (up - down);
+        }
+        let mut at = [saddle, y.signum() * 1e-4];
+        while at[1].abs() < y.abs() {
+            let [a, b] = slope(at[0], at[1]);
+            let length = a.hypot(b);
+            at = [
+                at[0] - 1e-4 * a / length * units[0],
+                at[1] - 1e-4 * b / length * units[1],
+            ];
+        }
+        at[0]
+    }
+
+    #[test]
+    fn basins_end_along_the_valley_within_the_stated_error() {
+        for count in [40, 64, 100] {
+            let (density, detection) = detected(curved, count);
+            let right = basin(&density, &detection, 2).unwrap();
+            let left = basin(&density, &detection, 1).unwrap();
+            let [border] = &right[..] else {
+                panic!("{} borders", right.len())
+            };
+            for y in [-1.2, -0.6, 0.5, 1.1] {
+                let exact = valley_at(y, border.units);
+                let error = border
+                    .nodes
+                    .iter()
+                    .map(|node| node.error)
+                    .fold(0.0, f64::max);
+                let off = error * border.units[0];
+                assert!(
+                    border.holds([exact + off, y]),
+                    "{count} cells, y = {y}: {exact} + {off}"
+                );
+                assert!(
+                    !border.holds([exact - off, y]),
+                    "{count} cells, y = {y}: {exact} - {off}"
+                );
+                assert!(left[0].holds([exact - off, y]) && !left[0].holds([exact + off, y]));
+                assert!(off < 0.1 * 6.0 / count as f64, "{count} cells: {off}");
+            }
+            assert!(basin(&density, &detection, 3).is_none());
+            assert!(crest(&density, &detection).is_none());
+        }
+    }
+
+    #[test]
+    fn four_basins_end_at_two_valleys_each() {
+        let log = |x: f64, y: f64| -(x * x - 1.0).powi(2) - 1.3 * (y * y - 1.0).powi(2);
+        let (density, detection) = detected(log, 60);
+        for (number, place) in [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]]
+            .iter()
+            .enumerate()
+        {
+            let borders = basin(&density, &detection, number + 1).unwrap();
+            let holds = |at: [f64; 2]| borders.iter().all(|one| one.holds(at));
+            let [x, y] = *place;
+            for [a, b] in [[0.05, 0.05], [0.1, 1.5], [1.9, 0.1], [1.5, 1.6]] {
+                assert!(holds([a * x, b * y]), "{number}: {a}, {b}");
+                assert!(
+                    !holds([-a * x, b * y]) && !holds([a * x, -b * y]),
+                    "{number}: {a}, {b}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_ring_ends_at_its_crest() {
+        // r = 1 about (0.2, -0.1), in a frame that is oblique and not square, with peaks on the crest.
+        let radius = |x: f64, y: f64| {
+            let (x, y) = (x - 0.2, y + 0.1);
+            (0.7 * x + 0.2 * y).hypot(0.9 * y - 0.1 * x)
+        };
+        let log = |x: f64, y: f64| -6.0 * (radius(x, y) - 1.0).powi(2);
+        let (density, detection) = detected(log, 80);
+        let ring = crest(&density, &detection).unwrap();
+        for degrees in (0..360).step_by(7) {
+            let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+            let one = radius(0.2 + cos, -0.1 + sin);
+            let at = |r: f64| [0.2 + cos * r / one, -0.1 + sin * r / one];
+            assert!(ring.holds(at(0.985)) && !ring.holds(at(1.015)), "{degrees}");
+            assert!(!ring.clone().other_side().holds(at(0.985)));
+        }
+        assert!(basin(&density, &detection, 1).is_none());
+    }
+
+    #[test]
+    fn a_broken_line_passes_its_nodes() {
+        let nodes = [(-1.0, 0.5), (0.25, 1.0), (1.0, -2.0), (2.0, -1.0)];
+        let text = broken_line("u", &nodes);
+        let terms = |u: f64| -> f64 {
+            let text = text.replace('u', &format!("({u:?})"));
+            // A sum of products of numbers in parentheses and of abs(a - (b)).
+            let parts = text.split(" + ").map(|part| {
+                let number = |text: &str| text.trim_matches(['(', ')']).parse::<f64>().unwrap();
+                match part.split_once('*') {
+                    None => number(part),
+                    Some((factor, rest)) => match rest.strip_prefix("abs(") {
+                        Some(rest) => {
+                            let (a, b) = rest.split_once(" - ").unwrap();
+                            number(factor) * (number(a) - number(b)).abs()
+                        }
+                        None => number(factor) * number(rest),
+                    },
+                }
+            });
+            parts.sum()
+        };
+        for (along, across) in nodes {
+            assert!((terms(along) - across).abs() < 1e-12, "{text}");
+        }
+        assert!((terms(3.0) - 0.0).abs() < 1e-12 && (terms(-3.5) + 0.5).abs() < 1e-12);
+    }
+}
