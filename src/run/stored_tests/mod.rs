@@ -2,6 +2,7 @@
 
 mod faults;
 mod one_axis;
+mod range_ends;
 
 use super::store::write_store;
 use super::zarr::StoredArray;
