@@ -62,6 +62,25 @@ struct StoredKink {
     jump: StoredArray,
 }
 
+/// How many numbers a density has, with what is known of its axes.
+pub(super) fn numbers_of(estimate: &EstimatedDensity) -> usize {
+    let EstimatedDensity {
+        density,
+        standard_error,
+        variants,
+        truncation,
+        ..
+    } = estimate;
+    let of_variants = match variants {
+        Variants::None => 0,
+        Variants::Scheme(second) => second.len(),
+        Variants::Jackknife(replicates) => replicates.iter().map(Vec::len).sum(),
+    };
+    let along: usize = density.axes.iter().map(Axis::count).sum();
+    let in_cells = density.values.len() + standard_error.len() + truncation.change.len();
+    in_cells + of_variants + OF_AXES * along
+}
+
 impl StoredDensities {
     /// Opens the store at `path`.
     ///

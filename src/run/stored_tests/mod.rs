@@ -3,6 +3,7 @@
 mod faults;
 mod one_axis;
 mod range_ends;
+mod unfinished;
 
 use super::store::write_store;
 use super::zarr::StoredArray;
