@@ -279,9 +279,9 @@ fn a_figure_is_drawn_by_its_name() {
     figures.check(&["joint_sheets"]).unwrap();
     assert!(figures.check(&["sheets"]).is_err());
     let usual = FigureSettings::default();
-    let names: Vec<&str> = usual.names().iter().map(String::as_str).collect();
+    let words: Vec<&str> = usual.names().iter().map(String::as_str).collect();
     assert_eq!(
-        of(&names),
+        of(&words),
         ["diagram_x", "diagram_y", "marginals", "joint_xy"]
     );
     assert_eq!(of(&["all"]).len(), all.len());
