@@ -26,8 +26,14 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<Outcome, CommandError> {
     let spec = shards.any()?.sweep_file().validate()?.fixed()?;
     let problem = &spec.problem;
     let (subject, cells) = (problem.subject(), (problem.space(), problem.bins()));
-    let gathered = shards.gather(subject, cells, &spec.methods())?;
     let path = arguments.out.as_deref().unwrap_or(&arguments.run);
+    // Nothing is read of the shards of a merge that is complete.
+    let complete = SweepJob::merged(&spec, shards.of(), Gathered::default());
+    if shards.missing().is_empty() && complete.start(path)? == Start::Complete {
+        let outcome = jobs::run(complete, path, true, &arguments.work)?;
+        return curve::after_sweep(&spec, path, (&arguments.work, true), outcome);
+    }
+    let gathered = shards.gather(subject, cells, &spec.methods())?;
     if !shards.missing().is_empty() {
         return partial(&spec, &shards, gathered, path);
     }

@@ -149,7 +149,8 @@ impl<'a> Figures<'a> {
     pub fn check<S: AsRef<str>>(&self, words: &[S]) -> Result<(), FigureError> {
         let is_known = |word: &&str| {
             let mut sketches = self.sketches.iter();
-            self.kinds.contains(word) || sketches.any(|one| names::matches(word, &one.name))
+            let kind = names::of_sheets(word).unwrap_or(word);
+            self.kinds.contains(&kind) || sketches.any(|one| one.is_named_by(word))
         };
         let mut words = words.iter().map(AsRef::as_ref);
         match words.find(|word| *word != "all" && !is_known(word)) {
@@ -162,12 +163,13 @@ impl<'a> Figures<'a> {
     }
 
     /// Draws the figures that some words name, in their order: a word is a whole name, the beginning of names up to a
-    /// `_` (`joint` names `joint_xy_0.5`), or `all`. Those without any density are left out, and words that name none
+    /// `_` (`joint` names `joint_xy_0.5`), the same with `_sheets` for those that show all values (`joint_sheets` names
+    /// `joint_xy` alone), or `all`. Those without any density are left out, and words that name none
     /// are passed over. One that has no room on a page has several, `…_page1`, `…_page2`.
     pub fn draw_named<S: AsRef<str>>(&self, words: &[S]) -> Vec<Figure> {
         let is_wanted = |sketch: &&Sketch<'_>| {
             let mut words = words.iter().map(AsRef::as_ref);
-            words.any(|word| names::matches(word, &sketch.name))
+            words.any(|word| sketch.is_named_by(word))
         };
         let wanted: Vec<&Sketch<'_>> = self.sketches.iter().filter(is_wanted).collect();
         let drawn = wanted.par_iter().map(|sketch| sketch.draw(&self.print));

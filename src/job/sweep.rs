@@ -124,11 +124,12 @@ impl Job for SweepJob<'_> {
         };
         let path = || home.to_owned();
         let same = run.check_sweep(&self.sweep.to_toml());
-        if let Part::Merged(of, _) | Part::Gathered(of, _) = self.part {
-            let is_ours = run.merged() == Some(of) && same.is_ok();
+        if let Part::Merged(of, gathered) | Part::Gathered(of, gathered) = &self.part {
+            let is_ours = run.merged() == Some(*of) && same.is_ok();
+            let goes_on = is_ours && run.can_go_on() && gathered.holders.are_those_of(home)?;
             return Ok(match run.ending() {
                 Ending::Complete if is_ours => Start::Complete,
-                _ if is_ours && run.can_go_on() => Start::GoOn,
+                _ if goes_on => Start::GoOn,
                 _ => Start::Anew,
             });
         }

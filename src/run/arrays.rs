@@ -8,7 +8,7 @@
 //! | `p_x`, `p_xy` | parameter, axes … | density; attribute `centre_of_symmetry` where the system declares one, `formulas` of quantities |
 //! | `p_x_error` | as `p_x` | standard error, with what open ends of the ranges may have changed (generator) |
 //! | `p_x_second` | as `p_x` | density by a second discretisation (generator) |
-//! | `p_x_truncated` | parameter | share by which the ends of the ranges may have changed all of `p_x` (generator) |
+//! | `range_ends` | parameter, density, number | what the ends of the ranges may have changed of each density (generator) |
 //! | `p_x_closed` | as `p_x` | by how much closed ends may change `p_x` besides; where enough leaves (generator) |
 //! | `p_x_replicate` | parameter, replicate, axes … | densities without one group of samples each (SGCM) |
 //! | `exit_mean_time`, `exit_committor` | parameter, axes … | field of the passage `exit` over the state where it starts |
@@ -55,6 +55,29 @@ pub(super) const KINK_AT: &str = "at";
 /// Whether the slope bends there and does not jump: see [`Kink::is_bend`].
 pub(super) const KINK_BENDS: &str = "bends";
 
+/// What the array of [`EndNumber`]s is, in words.
+const RANGE_ENDS_WORDS: &str = "what ends of the ranges may have changed of each density";
+/// The name of that array. Its two dimensions beside the parameter are called after the attributes that name what
+/// stands along them.
+pub(super) const RANGE_ENDS: &str = "range_ends";
+/// Attribute: densities by their arrays, in the order in which their numbers stand.
+pub(super) const RANGE_ENDS_DENSITIES: &str = "densities";
+/// Attribute: the words of the numbers of a density, in their order.
+pub(super) const RANGE_ENDS_NUMBERS: &str = "numbers";
+
+/// A number that a density has at a value of the parameter because its ranges have ends: with those of all densities
+/// it stands in one array, since an array of its own takes two files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum EndNumber {
+    /// The share by which all of a density may have been changed.
+    Share,
+    /// The density at open ends.
+    Level,
+}
+
+// The words are the endings of the arrays that each of them had in earlier versions.
+words! { EndNumber, pub(super) word: Share: "truncated", Level: "end_level" }
+
 /// One array of the store.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Layout {
@@ -98,6 +121,26 @@ impl Layout {
         Self::new(name.clone(), vec![(name, 1)], words.to_owned())
     }
 
+    /// The numbers of all densities that the ends of the ranges leave, by the names of the densities.
+    pub(super) fn range_ends(family: &Family, densities: &[String]) -> Self {
+        let numbers = EndNumber::ALL.map(EndNumber::word);
+        let dimensions = vec![
+            (family.parameter().to_owned(), 1),
+            (
+                along_range_ends(RANGE_ENDS_DENSITIES),
+                densities.len() as u64,
+            ),
+            (along_range_ends(RANGE_ENDS_NUMBERS), numbers.len() as u64),
+        ];
+        Self::new(
+            RANGE_ENDS.to_owned(),
+            dimensions,
+            RANGE_ENDS_WORDS.to_owned(),
+        )
+        .attribute(RANGE_ENDS_DENSITIES, json!(densities))
+        .attribute(RANGE_ENDS_NUMBERS, json!(numbers))
+    }
+
     /// Whether it has a row for every value of the parameter.
     pub(super) fn is_along(&self, family: &Family) -> bool {
         let first = self.dimensions.first();
@@ -111,7 +154,6 @@ impl Layout {
         let mut layout = Self::of_cells(family, estimate, part.name(family, observable), long_name);
         match (part, &estimate.variants) {
             (DensityPart::Density, _) => return layout.with_facts(family, estimate),
-            (DensityPart::Truncated | DensityPart::EndLevel, _) => layout.dimensions.truncate(1),
             (DensityPart::Replicates, Variants::Jackknife(all)) => {
                 let count = all.len() as u64;
                 layout.dimensions.insert(1, (REPLICATE.to_owned(), count));
@@ -228,10 +270,6 @@ pub(super) enum DensityPart {
     Second,
     /// By how much closed ends, and modes that are not there, may change the density.
     Closed,
-    /// The share by which the ends of the ranges may have changed all of the density.
-    Truncated,
-    /// The density at open ends of the ranges.
-    EndLevel,
     /// The densities without one group of samples each.
     Replicates,
     /// Its kinks, an array each.
@@ -239,8 +277,8 @@ pub(super) enum DensityPart {
 }
 
 words! {
-    DensityPart, ending: Density: "", Error: "_error", Second: "_second", Closed: "_closed", Truncated: "_truncated",
-    EndLevel: "_end_level", Replicates: "_replicate", Kinks: "_kink_"
+    DensityPart, ending: Density: "", Error: "_error", Second: "_second", Closed: "_closed",
+    Replicates: "_replicate", Kinks: "_kink_"
 }
 
 impl DensityPart {
@@ -256,8 +294,6 @@ impl DensityPart {
             Self::Error => "standard error of the ",
             Self::Second => "second discretisation of the ",
             Self::Closed => "what closed ends may change of the ",
-            Self::Truncated => "share by which ends may have changed the ",
-            Self::EndLevel => "open ends' level of the ",
             Self::Replicates => "replicates of the ",
             Self::Kinks => "kinks of the ",
         }
@@ -268,14 +304,15 @@ impl DensityPart {
         match self {
             Self::Second => format!("{density} by a second discretisation"),
             Self::Closed => format!("what closed ends of the ranges may change of the {density}"),
-            Self::Truncated => {
-                format!("share by which ends of the ranges may have changed the {density}")
-            }
-            Self::EndLevel => format!("level of the {density} at open ends of the ranges"),
             Self::Replicates => format!("{density} without one group of samples each"),
             part => format!("{}{density}", part.before()),
         }
     }
+}
+
+/// Name of a dimension of the array of [`EndNumber`]s.
+fn along_range_ends(what: &str) -> String {
+    format!("{RANGE_ENDS}_{what}")
 }
 
 /// Name of the error of a field.
@@ -293,7 +330,10 @@ pub(super) fn names(family: &Family, observables: &[Observable]) -> Vec<Named> {
     let mut names = vec![
         Named::new(family.parameter(), SWEPT),
         Named::new(REPLICATE, "groups of samples"),
+        Named::new(RANGE_ENDS, RANGE_ENDS_WORDS),
     ];
+    let along = [RANGE_ENDS_DENSITIES, RANGE_ENDS_NUMBERS].map(along_range_ends);
+    names.extend(along.map(|name| Named::new(name, RANGE_ENDS_WORDS)));
     let mut known: Vec<&str> = Vec::new();
     let watched = observables.iter().flat_map(|observable| observable.axes());
     // Fields are over all axes.

@@ -35,12 +35,18 @@ impl HoldingShard {
         })
     }
 
+    /// Whether another one is the same shard with the same densities, wherever both are.
+    pub(super) fn is(&self, other: &Self) -> bool {
+        let known = |shard: &Self| (shard.number, shard.of, shard.sums.clone());
+        known(self) == known(other)
+    }
+
     /// Where it is, for the reader of an unfinished merge in a folder: below that, below the run whose earlier version
     /// that is, or where it was.
     ///
     /// # Errors
-    /// [`RunError::ShardGone`] where it is not there, or another one is in its place; [`RunError::Damaged`] where its
-    /// densities are not those that it left.
+    /// [`RunError::ShardGone`] where it is not there, or another one is in its place. Whether its densities are those
+    /// that it left, [`check_densities`] says of what was read.
     pub(super) fn find(&self, run: &Path) -> Result<PathBuf, RunError> {
         let shard = Shard::new(self.number, self.of);
         let homes = shard.into_iter().flat_map(|shard| {
@@ -49,12 +55,18 @@ impl HoldingShard {
         });
         let mut places = homes.chain([self.folder.clone()]);
         let found = places.find(|folder| identity(folder).as_ref() == Some(&self.sums));
-        let found = found.ok_or_else(|| RunError::ShardGone {
+        found.ok_or_else(|| RunError::ShardGone {
             path: self.folder.clone(),
-        })?;
-        checksums::require(&found, &[DENSITIES])?;
-        Ok(found)
+        })
     }
+}
+
+/// Refuses the shard in a folder whose densities are not those that it left: all of them are read for that.
+///
+/// # Errors
+/// [`RunError::Damaged`], [`RunError::Read`], [`RunError::Checksums`].
+pub(super) fn check_densities(folder: &Path) -> Result<(), RunError> {
+    checksums::require(folder, &[DENSITIES])
 }
 
 /// By what the shard in a folder is known: the checksums of its densities. Figures and tables may be made anew.

@@ -1,13 +1,15 @@
 //! Where a run's densities are read: its store, and the journal of an unfinished one.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::holding_shard::HoldingShard;
+use super::holding_shard::{HoldingShard, check_densities};
 use super::journal::Held;
-use super::stored_densities::StoredDensities;
+use super::stored_densities::{StoredDensities, numbers_of};
 use super::stored_fields::StoredFields;
 use super::{Journal, RunError};
 use crate::continuation::{Point, Subject};
+use crate::density::EstimatedDensity;
 use crate::space::{Axis, CellSpace};
 use crate::sweep_file::{bytes_in_words, has_room};
 
@@ -28,11 +30,37 @@ pub(super) struct PointDensities<'a> {
     cells: (&'a CellSpace, &'a [Axis]),
     journal: Option<Journal>,
     /// Stores of the shards in which the journal says that densities are.
-    shards: Vec<Option<StoredDensities>>,
+    shards: Vec<Option<ShardDensities>>,
     store: Option<StoredDensities>,
     fields: Option<StoredFields>,
     /// What is opened.
     path: PathBuf,
+}
+
+/// The densities of a shard, and whether some of them were read.
+struct ShardDensities {
+    folder: PathBuf,
+    store: StoredDensities,
+    is_read: AtomicBool,
+}
+
+impl ShardDensities {
+    fn open(
+        folder: PathBuf,
+        subject: &Subject,
+        cells: (&CellSpace, &[Axis]),
+    ) -> Result<Self, RunError> {
+        Ok(Self {
+            store: StoredDensities::open(&folder.join(STORE), subject, cells)?,
+            folder,
+            is_read: AtomicBool::new(false),
+        })
+    }
+
+    fn at(&self, value: f64) -> Result<Option<Vec<EstimatedDensity>>, RunError> {
+        self.is_read.store(true, Ordering::Relaxed);
+        self.store.at(value)
+    }
 }
 
 impl<'a> PointDensities<'a> {
@@ -56,9 +84,8 @@ impl<'a> PointDensities<'a> {
         if let Some(journal) = &journal {
             for shard in journal.shards::<Option<HoldingShard>>()? {
                 let found = shard.map(|shard| shard.find(run)).transpose()?;
-                let store = found.map(|shard| shard.join(STORE));
-                let store = store.map(|store| StoredDensities::open(&store, subject, cells));
-                shards.push(store.transpose()?);
+                let opened = found.map(|folder| ShardDensities::open(folder, subject, cells));
+                shards.push(opened.transpose()?);
             }
         }
         // Unfinished runs of early versions have a store that grew.
@@ -86,14 +113,36 @@ impl<'a> PointDensities<'a> {
         })
     }
 
-    /// Refuses so many points of the run in a folder where the system would not give the memory for their densities.
+    /// How many numbers the densities at a value have at most, the first of `values` standing for all of those in a
+    /// journal.
     ///
     /// # Errors
-    /// [`RunError::Memory`].
-    pub(super) fn check_room(&self, run: &Path, points: usize) -> Result<(), RunError> {
-        let one = self.store.as_ref().map_or(0, StoredDensities::numbers);
+    /// As [`Journal::densities`].
+    pub(super) fn numbers(&self, values: &[f64]) -> Result<usize, RunError> {
+        let shards = self.shards.iter().flatten().map(|shard| &shard.store);
+        let stores = shards.chain(&self.store).map(StoredDensities::numbers);
+        let first = match (stores.max(), &self.journal) {
+            (Some(numbers), _) => return Ok(numbers),
+            (None, Some(journal)) => values
+                .first()
+                .map(|&value| journal.densities(self.subject, self.cells, value)),
+            (None, None) => None,
+        };
+        Ok(match first.transpose()?.flatten() {
+            Some(Held::Here(densities)) => densities.iter().map(numbers_of).sum(),
+            _ => 0,
+        })
+    }
+
+    /// Refuses the points at these values of the run in a folder where the system would not give the memory for their
+    /// densities.
+    ///
+    /// # Errors
+    /// [`RunError::Memory`]; as [`Journal::densities`].
+    pub(super) fn check_room(&self, run: &Path, values: &[f64]) -> Result<(), RunError> {
+        let one = self.numbers(values)?;
         let heaps = HEAP * rayon::current_num_threads() as f64;
-        let bytes = (points * one * size_of::<f64>()) as f64 + BESIDE + heaps;
+        let bytes = (values.len() * one * size_of::<f64>()) as f64 + BESIDE + heaps;
         match has_room(bytes) {
             true => Ok(()),
             false => Err(RunError::Memory {
@@ -101,6 +150,17 @@ impl<'a> PointDensities<'a> {
                 bytes: bytes_in_words(bytes),
             }),
         }
+    }
+
+    /// Refuses shards whose densities were read and are not those that they left. Those that no point is of are left
+    /// alone: a merge that was stopped early has read few of them.
+    ///
+    /// # Errors
+    /// [`RunError::Damaged`], [`RunError::Read`], [`RunError::Checksums`].
+    pub(super) fn check_shards(&self) -> Result<(), RunError> {
+        let mut read =
+            (self.shards.iter().flatten()).filter(|shard| shard.is_read.load(Ordering::Relaxed));
+        read.try_for_each(|shard| check_densities(&shard.folder))
     }
 
     /// Gives a point its densities, and its fields of passages.
@@ -116,7 +176,7 @@ impl<'a> PointDensities<'a> {
                 None => None,
                 Some(Held::Here(densities)) => Some(densities),
                 Some(Held::In(shard)) => match self.shards.get(shard) {
-                    Some(Some(store)) => store.at(value)?,
+                    Some(Some(shard)) => shard.at(value)?,
                     _ => None,
                 },
             };

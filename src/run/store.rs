@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use serde_json::{Map, json};
 
 use super::RunError;
-use super::arrays::{DensityPart, Layout};
+use super::arrays::{DensityPart, EndNumber, Layout, RANGE_ENDS};
 use super::checksums::Sums;
 use super::tree::rename;
 use super::zarr::{self, Chunks, PointValues, StoredValues, Written};
@@ -45,6 +45,7 @@ pub(super) fn write_store(
     let room = room.map_err(failed)?;
     let fresh = room.path().join("fresh");
     let mut store = Store::default();
+    store.name_densities(family, points);
     for (index, (value, densities, fields)) in points.iter().enumerate() {
         store.add(family, (index, *value), densities);
         store.add_fields(family, index, fields);
@@ -68,10 +69,44 @@ const FEW_VALUES: usize = 4;
 /// A store that is composed.
 #[derive(Default)]
 struct Store<'a> {
+    /// The densities of all values, by the names of their arrays.
+    densities: Vec<String>,
     arrays: Vec<(Layout, Vec<PointValues<'a>>)>,
 }
 
 impl<'a> Store<'a> {
+    fn name_densities(&mut self, family: &Family, points: &[StoredPoint<'_>]) {
+        for estimate in points.iter().flat_map(|(_, densities, _)| *densities) {
+            let name = DensityPart::Density.name(family, estimate.observable);
+            if !self.densities.contains(&name) {
+                self.densities.push(name);
+            }
+        }
+    }
+
+    /// Adds what the ends of the ranges have left of all densities at a value; nothing where they have left nothing.
+    fn add_range_ends(&mut self, family: &Family, index: usize, densities: &[EstimatedDensity]) {
+        let mut numbers = Vec::new();
+        for name in &self.densities {
+            let mut all = densities.iter();
+            let is_it = |one: &&EstimatedDensity| {
+                DensityPart::Density.name(family, one.observable) == *name
+            };
+            let truncation = all.find(is_it).map(|one| &one.truncation);
+            numbers.extend(EndNumber::ALL.map(|number| {
+                let found = truncation.map(|truncation| match number {
+                    EndNumber::Share => truncation.share,
+                    EndNumber::Level => truncation.level,
+                });
+                found.filter(|found| *found > 0.0).unwrap_or(f64::NAN)
+            }));
+        }
+        if numbers.iter().any(|number| !number.is_nan()) {
+            let layout = Layout::range_ends(family, &self.densities);
+            self.put(layout, index, vec![numbers.into()]);
+        }
+    }
+
     /// Adds the densities at a value of the parameter, with the first of them their axes.
     fn add(
         &mut self,
@@ -87,6 +122,7 @@ impl<'a> Store<'a> {
             }
             self.add_estimate(family, index, estimate);
         }
+        self.add_range_ends(family, index, densities);
     }
 
     fn add_axis(&mut self, name: &str, axis: &Axis) {
@@ -126,14 +162,6 @@ impl<'a> Store<'a> {
             errors,
         );
         let truncation = &estimate.truncation;
-        let single = [
-            (DensityPart::Truncated, truncation.share),
-            (DensityPart::EndLevel, truncation.level),
-        ];
-        for (part, number) in single.into_iter().filter(|(_, number)| *number > 0.0) {
-            let layout = Layout::part(part, family, estimate);
-            self.put(layout, index, vec![vec![number].into()]);
-        }
         if !truncation.change.is_empty() {
             let change = whole(&truncation.change);
             self.put(
@@ -200,7 +228,10 @@ impl<'a> Store<'a> {
     fn write(mut self, family: &Family, folder: &Path) -> std::io::Result<Sums> {
         let values = self.arrays.first().map_or(0, |(_, rows)| rows.len());
         let filled = |rows: &[PointValues<'_>]| rows.iter().filter(|row| !row.is_empty()).count();
-        let of_densities = |layout: &Layout| layout.is_along(family) && layout.dimensions.len() > 1;
+        let of_densities = |layout: &Layout| {
+            let is_along = layout.is_along(family) && layout.dimensions.len() > 1;
+            is_along && layout.name != RANGE_ENDS
+        };
         let densities = self
             .arrays
             .iter()

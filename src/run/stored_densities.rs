@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use opened::Opened;
 
 use super::RunError;
+use super::arrays::EndNumber;
 use super::zarr::StoredArray;
 use crate::continuation::Subject;
 use crate::density::{
@@ -39,8 +40,8 @@ struct Observed {
     density: StoredArray,
     error: StoredArray,
     second: Option<StoredArray>,
-    truncated: Option<StoredArray>,
-    end_level: Option<StoredArray>,
+    /// In the order of [`EndNumber::ALL`].
+    range_ends: [Option<StoredNumber>; EndNumber::ALL.len()],
     closed: Option<StoredArray>,
     replicates: Option<StoredArray>,
     centre: Option<Vec<f64>>,
@@ -48,11 +49,36 @@ struct Observed {
     kinks: Vec<StoredKink>,
 }
 
+/// A number at each parameter value: the array in which it stands, and where in a row.
+struct StoredNumber {
+    array: StoredArray,
+    place: usize,
+}
+
 struct StoredKink {
     axis: usize,
     at: f64,
     bends: bool,
     jump: StoredArray,
+}
+
+/// How many numbers a density has, with what is known of its axes.
+pub(super) fn numbers_of(estimate: &EstimatedDensity) -> usize {
+    let EstimatedDensity {
+        density,
+        standard_error,
+        variants,
+        truncation,
+        ..
+    } = estimate;
+    let of_variants = match variants {
+        Variants::None => 0,
+        Variants::Scheme(second) => second.len(),
+        Variants::Jackknife(replicates) => replicates.iter().map(Vec::len).sum(),
+    };
+    let along: usize = density.axes.iter().map(Axis::count).sum();
+    let in_cells = density.values.len() + standard_error.len() + truncation.change.len();
+    in_cells + of_variants + OF_AXES * along
 }
 
 impl StoredDensities {
@@ -211,20 +237,26 @@ impl Observed {
     }
 
     fn truncation(&self, path: &Path, index: u64) -> Result<Truncation, RunError> {
-        let read = |array: &Option<StoredArray>| match array {
-            Some(array) => at_index(path, array, index),
-            None => Ok(Vec::new()),
-        };
-        let known = |values: &Vec<f64>| !is_missing(values);
-        let single = |values: Vec<f64>| {
-            let first = values.first().copied();
-            first.filter(|value| value.is_finite()).unwrap_or(0.0)
-        };
-        Ok(Truncation {
-            share: single(read(&self.truncated)?),
-            change: Some(read(&self.closed)?).filter(known).unwrap_or_default(),
-            level: single(read(&self.end_level)?),
-        })
+        let mut truncation = Truncation::default();
+        if let Some(array) = &self.closed {
+            truncation.change = at_index(path, array, index)?;
+            if is_missing(&truncation.change) {
+                truncation.change.clear();
+            }
+        }
+        for (number, stored) in EndNumber::ALL.into_iter().zip(&self.range_ends) {
+            let Some(StoredNumber { array, place }) = stored else {
+                continue;
+            };
+            let row = at_index(path, array, index)?;
+            let found = row.get(*place).copied().filter(|found| found.is_finite());
+            let found = found.unwrap_or(0.0);
+            match number {
+                EndNumber::Share => truncation.share = found,
+                EndNumber::Level => truncation.level = found,
+            }
+        }
+        Ok(truncation)
     }
 
     fn variants(&self, path: &Path, index: u64) -> Result<Variants, RunError> {

@@ -248,14 +248,16 @@ impl StoredRun {
             return self.check_sums().map(|()| points);
         }
         let densities = PointDensities::open(&self.path, complete, subject, (space, bins))?;
-        let count = points.iter().filter(|point| has_density(point)).count();
-        densities.check_room(&self.path, count)?;
+        let wanted = points.iter().filter(|point| has_density(point));
+        let wanted: Vec<f64> = wanted.map(|point| point.value).collect();
+        densities.check_room(&self.path, &wanted)?;
         let solved = points.par_iter_mut();
         let solved = solved.filter(|point| has_density(point));
         let results: Vec<Result<(), RunError>> =
             solved.map(|point| densities.read(point)).collect();
         // Of several faults the same one is told each time: that of the first point.
         results.into_iter().collect::<Result<(), RunError>>()?;
+        densities.check_shards()?;
         self.check_sums()?;
         Ok(points)
     }

@@ -2,7 +2,8 @@
 //! metadata as JSON and its chunks, files of little-endian numbers without compression.
 //!
 //! Chunks divide the first dimension: into single indices, of which those without numbers have no chunk, or into a few
-//! long parts. Those of early versions may divide the second dimension too. NaN stands for what no chunk holds.
+//! long parts, of which those without numbers have none either. Those of early versions may divide the second dimension
+//! too. NaN stands for what no chunk holds.
 
 use std::fs::File;
 use std::io::{Error, ErrorKind, Read as _, Result, Seek as _, SeekFrom};
@@ -118,10 +119,8 @@ pub(super) fn write(
     let shape = chunk.clone();
     let length: u64 = shape.iter().skip(1).product();
     let most = (LARGEST_CHUNK / NUMBER / length.max(1)).max(1);
-    let count = (rows.len() as u64).div_ceil(most).max(1);
-    // As many rows in every chunk: the last one has to be as long as the others.
     let long = match chunks {
-        Chunks::Few => (rows.len() as u64).div_ceil(count).max(1),
+        Chunks::Few => rows_of_chunks(rows, most),
         Chunks::EachIndex => 1,
     };
     if let Some(first) = chunk.first_mut() {
@@ -161,6 +160,26 @@ pub(super) fn write(
     Ok(Written { about, sums })
 }
 
+/// How many rows each of few chunks has, at most `most`: as few as leave all rows with numbers in one chunk, where they
+/// fit into one, since chunks without numbers are not written. Else all chunks have as many, because the last one has
+/// to be as long as the others.
+fn rows_of_chunks(rows: &[PointValues<'_>], most: u64) -> u64 {
+    let all = rows.len() as u64;
+    let has_numbers = |row: &PointValues<'_>| !row.is_empty();
+    let ends = [
+        rows.iter().position(has_numbers),
+        rows.iter().rposition(has_numbers),
+    ];
+    if let [Some(first), Some(last)] = ends.map(|end| end.map(|index| index as u64)) {
+        let mut lengths = last - first + 1..=most.min(all);
+        if let Some(fewest) = lengths.find(|length| first / length == last / length) {
+            return fewest;
+        }
+    }
+    let count = all.div_ceil(most).max(1);
+    all.div_ceil(count).max(1)
+}
+
 /// Writes the metadata of an array, or of the folder of several, and returns their name with their checksum.
 ///
 /// # Errors
@@ -187,7 +206,7 @@ fn chunk_name(first: u64, second: u64, dimensions: usize) -> String {
 }
 
 /// An array that is read.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct StoredArray {
     folder: PathBuf,
     shape: Vec<u64>,

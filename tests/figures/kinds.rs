@@ -21,7 +21,7 @@ fn folder(name: &str) -> (Option<tempfile::TempDir>, PathBuf) {
     }
 }
 
-/// Draws the figures that are drawn where none is named into a folder; returns the files.
+/// Draws diagrams, marginals, and joint densities together and each, into a folder; returns the files.
 fn draw_all(
     result: &SweepResult,
     title: &str,
@@ -30,8 +30,7 @@ fn draw_all(
     folder: &Path,
 ) -> Vec<PathBuf> {
     let figures = Figures::of_sweep(result, title, at);
-    let usual = FigureSettings::default();
-    let figures = figures.draw_named(usual.names());
+    let figures = figures.draw_named(&["diagram", "marginals", "joint"]);
     write_figures(&figures, formats, folder).unwrap()
 }
 
@@ -272,6 +271,19 @@ fn a_figure_is_drawn_by_its_name() {
         ["diagram_x", "diagram_y", "joint_xy_0.5"]
     );
     assert_eq!(of(&["surface_xy"]).len(), 3);
+    // Sheets are named without the figures of single values, and those are drawn where nothing is named.
+    assert_eq!(
+        of(&["joint_sheets", "surface_sheets"]),
+        ["joint_xy", "surface_xy"]
+    );
+    figures.check(&["joint_sheets"]).unwrap();
+    assert!(figures.check(&["sheets"]).is_err());
+    let usual = FigureSettings::default();
+    let words: Vec<&str> = usual.names().iter().map(String::as_str).collect();
+    assert_eq!(
+        of(&words),
+        ["diagram_x", "diagram_y", "marginals", "joint_xy"]
+    );
     assert_eq!(of(&["all"]).len(), all.len());
     let unknown = figures
         .check(&["all", "joint", "joint_xy_0.7"])

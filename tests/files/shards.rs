@@ -167,6 +167,82 @@ fn a_killed_merge_reads_its_shards_and_goes_on_by_itself() {
     assert_eq!(found, wanted);
 }
 
+/// Densities of a shard as another build might have left them, and no detections: their last digits differ.
+fn computed_anew(room: &Room, shard: &str) {
+    use sha2::{Digest as _, Sha256};
+
+    let chunk = "densities.zarr/p_x/c/0/0";
+    let bytes = room.bytes(&format!("{shard}/{chunk}"));
+    let (numbers, _) = bytes.as_chunks();
+    let numbers = numbers.iter().map(|bytes| f64::from_le_bytes(*bytes));
+    let moved = numbers.flat_map(|number| (number * (1.0 + 1e-13)).to_le_bytes());
+    let moved: Vec<u8> = moved.collect();
+    let sum: String = Sha256::digest(&moved)
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect();
+    room.write(&format!("{shard}/{chunk}"), moved);
+    let sums = room.read(&format!("{shard}/checksums.sha256"));
+    let lines = sums
+        .lines()
+        .filter(|line| !line.ends_with("detections.bin"));
+    let lines = lines.map(|line| match line.ends_with(chunk) {
+        true => format!("{sum}  {chunk}\n"),
+        false => format!("{line}\n"),
+    });
+    room.write(
+        &format!("{shard}/checksums.sha256"),
+        lines.collect::<String>(),
+    );
+}
+
+/// What a merge that was stopped has written tells of densities that are nowhere any more.
+#[cfg(unix)]
+#[test]
+fn a_merge_whose_shard_is_computed_anew_meanwhile_begins_again() {
+    use super::killing::stopped_at;
+
+    let room = Room::new();
+    shards(&room, RAYLEIGH, 3, &[]);
+    let is_killed = (0..20).any(|_| {
+        for name in room.files("run", &["shards"]).keys() {
+            std::fs::remove_file(room.path("run").join(name)).unwrap();
+        }
+        stopped_at(&room, "merge run", 10, "-KILL")
+    });
+    assert!(is_killed, "it ended before it was killed");
+    let unfinished = room.read("run/points.csv");
+    computed_anew(&room, "run/shards/2-of-3");
+    room.refused(
+        "detect run --out none",
+        &["2-of-3, which is gone or was computed anew"],
+    );
+    room.run("merge run --out whole --quiet");
+    let merged = room.run("merge run");
+    merged.says(&[
+        "the earlier run is kept in run/previous/1",
+        "values were solved",
+    ]);
+    assert_eq!(room.read("run/previous/1/points.csv"), unfinished);
+    for name in ["features.csv", "bifurcations.csv", "checks.csv"] {
+        let [a, b] = ["run", "whole"].map(|run| room.read(&format!("{run}/{name}")));
+        assert_eq!(a, b, "{name}");
+    }
+    let stores = ["run", "whole"].map(|run| room.files(&format!("{run}/densities.zarr"), &[]));
+    assert!(stores[0] == stores[1]);
+    room.done("verify run");
+    // One that is complete does not look into its shards again, and says what it found.
+    let chunk = "run/shards/1-of-3/densities.zarr/p_x/c/0/0";
+    let bytes = room.bytes(chunk);
+    room.write(chunk, &bytes[8..]);
+    room.run("merge run")
+        .says(&["is complete: nothing was solved"]);
+    room.refused(
+        "merge run --out none",
+        &["the chunk c/0/0 has another length"],
+    );
+}
+
 #[test]
 fn what_shards_have_detected_is_not_detected_again_unless_another_program_has() {
     let room = Room::new();

@@ -57,6 +57,9 @@ fn expand(prefix: &str, tree: &str, into: &mut Vec<(String, String)>) {
 /// A path that a file names, the name that it gets there, and whether the file only hands it on.
 type Named = (String, String, bool);
 
+/// What each file names.
+type Names = BTreeMap<String, Vec<Named>>;
+
 fn words(code: &str) -> impl Iterator<Item = &str> {
     let is_name = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
     code.split(move |c| !is_name(c))
@@ -143,22 +146,22 @@ fn absolute(from: &[String], path: &str) -> Vec<String> {
 
 /// The file in which a path ends, names that a `mod.rs` hands on followed to where they stand; none for a path that
 /// only names a folder, as what is used of it is written elsewhere.
-fn resolve(files: &Files, path: &[String], depth: usize) -> Option<String> {
+fn resolve(names: &Names, path: &[String], depth: usize) -> Option<String> {
     for length in (1..=path.len()).rev() {
         let base = path[..length].join("/");
-        let names = [format!("{base}.rs"), format!("{base}/mod.rs")];
-        let Some(file) = names.into_iter().find(|name| files.contains_key(name)) else {
+        let of_module = [format!("{base}.rs"), format!("{base}/mod.rs")];
+        let Some(file) = of_module.into_iter().find(|name| names.contains_key(name)) else {
             continue;
         };
         let handed_on = path.get(length).and_then(|wanted| {
-            let mut all = paths(&files[&file]).into_iter();
+            let mut all = names[&file].iter();
             all.find(|(_, name, _)| name == wanted)
         });
         return match handed_on {
             Some((to, ..)) if depth < 6 => {
-                let mut next = absolute(&path[..length], &to);
+                let mut next = absolute(&path[..length], to);
                 next.extend_from_slice(&path[length + 1..]);
-                resolve(files, &next, depth + 1)
+                resolve(names, &next, depth + 1)
             }
             _ => (length < path.len() || !file.ends_with("mod.rs")).then_some(file),
         };
@@ -169,13 +172,15 @@ fn resolve(files: &Files, path: &[String], depth: usize) -> Option<String> {
 fn uses(files: &Files) -> Uses {
     let room = |file: &str| file.split('/').next().unwrap().to_owned();
     let mut uses = Uses::new();
-    for (file, code) in files {
+    // Each file is read once, however many others name it.
+    let names: Names = (files.iter())
+        .map(|(file, code)| (file.clone(), paths(code)))
+        .collect();
+    for (file, named) in &names {
         let own = module(file);
-        let named = paths(code)
-            .into_iter()
-            .filter(|(.., is_handed_on)| !is_handed_on);
+        let named = named.iter().filter(|(.., is_handed_on)| !is_handed_on);
         for (path, ..) in named {
-            let to = resolve(files, &absolute(&own, &path), 0);
+            let to = resolve(&names, &absolute(&own, path), 0);
             let to = to.filter(|to| to != file && room(to) == room(file));
             let to = to.filter(|to| !own.starts_with(&module(to)));
             uses.entry(file.clone()).or_default().extend(to);

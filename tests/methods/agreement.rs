@@ -247,8 +247,18 @@ fn compare(
     example: &Example,
     with_modes: Option<&Example>,
     value: f64,
-    (error, seed): (f64, u64),
+    sampling: (f64, u64),
 ) -> Vec<Agreement> {
+    compare_and_keep(example, with_modes, value, sampling).0
+}
+
+/// The same, with the densities of the trajectories.
+fn compare_and_keep(
+    example: &Example,
+    with_modes: Option<&Example>,
+    value: f64,
+    (error, seed): (f64, u64),
+) -> (Vec<Agreement>, Vec<EstimatedDensity>) {
     let timed = |example: &Example| {
         let clock = Instant::now();
         let densities = example.generator(value, example.scheme);
@@ -273,13 +283,12 @@ fn compare(
         example.parameter
     );
     let pairs = reference.iter().zip(&sampled).zip(&example.model.axes);
-    pairs
-        .map(|((reference, sampled), axis)| {
-            let found = Agreement::of(reference, sampled);
-            println!("| {value} | {} {found}", axis.name);
-            found
-        })
-        .collect()
+    let compared = pairs.map(|((reference, sampled), axis)| {
+        let found = Agreement::of(reference, sampled);
+        println!("| {value} | {} {found}", axis.name);
+        found
+    });
+    (compared.collect(), sampled)
 }
 
 impl std::fmt::Display for Agreement {
@@ -398,8 +407,7 @@ fn a_short_run_agrees_and_would_see_another_parameter_value() {
         "paper_example1",
         &["cells.x.count=100", "cells.y.count=100"],
     );
-    let mut found = compare(&coulomb, None, -0.02, (0.01, 1));
-    let (sampled, _) = coulomb.trajectories(-0.02, 0.01, 1);
+    let (mut found, sampled) = compare_and_keep(&coulomb, None, -0.02, (0.01, 1));
     let other = coulomb.generator(-0.018, AdvectiveScheme::Central6);
     let (bins, beyond) = pooled(&[Agreement::of(&other[0], &sampled[0])]);
     assert!(4 * beyond > bins, "{beyond} of {bins} bins");

@@ -275,6 +275,9 @@ fn the_generator_finds_every_stage_of_the_joint_density() {
         2.0 * total < points.0.len() as f64,
         "{total} factorisations"
     );
+    // The run has the same arrays, tables and figures as the shipped one, of fewer values.
+    let files = room.files("run", &[]).len();
+    assert!(files <= 60, "{files} files");
 }
 
 #[test]

@@ -29,7 +29,7 @@ const USUAL: f64 = 505.0;
 /// A diagram an observed marginal.
 pub(super) const KIND: Kind = Kind {
     names: &["diagram"],
-    is_usual: true,
+    usual: Some("diagram"),
     sketches: |sweep| sweep.of_marginals("diagram", draw),
 };
 

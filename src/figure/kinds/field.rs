@@ -37,7 +37,7 @@ fn border(colour: Colour) -> Stroke {
 /// Maps of each field at each chosen value, or one page of curves.
 pub(super) const KIND: Kind = Kind {
     names: &["field"],
-    is_usual: true,
+    usual: Some("field"),
     sketches,
 };
 

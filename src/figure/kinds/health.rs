@@ -68,7 +68,7 @@ impl Steps {
 /// The figure of a sweep.
 pub(super) const KIND: Kind = Kind {
     names: &["health"],
-    is_usual: false,
+    usual: None,
     sketches: |sweep| {
         let result = sweep.result;
         vec![Sketch::new("health", move |print| draw(result, print))]

@@ -45,7 +45,7 @@ struct Slab {
 /// A picture an observed density.
 pub(super) const KIND: Kind = Kind {
     names: &["homology"],
-    is_usual: false,
+    usual: None,
     sketches: |sweep| sweep.of_observables("homology", draw),
 };
 

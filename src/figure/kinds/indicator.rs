@@ -20,7 +20,7 @@ const ERRORS: f64 = 2.0;
 /// A figure an observable that has a centre of symmetry.
 pub(super) const KIND: Kind = Kind {
     names: &["indicator"],
-    is_usual: false,
+    usual: None,
     sketches: |sweep| sweep.of_observables("indicator", draw),
 };
 

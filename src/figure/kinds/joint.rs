@@ -25,7 +25,7 @@ const TALLEST: f64 = 420.0;
 
 pub(super) const KIND: Kind = Kind {
     names: &["joint", "multiples"],
-    is_usual: true,
+    usual: Some("joint_sheets"),
     sketches,
 };
 
@@ -77,7 +77,7 @@ impl<'a> Sweep<'a> {
         let points = self.chosen.iter();
         let single = |point: &&'a Point| {
             let name = names::at_value(name, self.family(), point.value);
-            self.joint(name, way, &[point], draw)
+            self.joint(name, way, &[point], draw).of_one_value()
         };
         points.map(single).collect()
     }

@@ -46,7 +46,7 @@ pub(super) struct Overlaid<'a> {
 
 pub(super) const KIND: Kind = Kind {
     names: &["marginals"],
-    is_usual: true,
+    usual: Some("marginals"),
     sketches: |sweep| {
         let (result, chosen) = (sweep.result, sweep.chosen.clone());
         let draw = move |print: &Print<'_>| draw(result, &chosen, print);

@@ -30,7 +30,7 @@ const DROP: &[f64] = &[1.5, 2.0];
 /// A sheet of all measures, then one figure each.
 pub(super) const KIND: Kind = Kind {
     names: &["measures"],
-    is_usual: false,
+    usual: None,
     sketches: |sweep| {
         let (result, all) = (sweep.result, measures(sweep.result));
         let singles = all.clone().into_iter().map(|one| {

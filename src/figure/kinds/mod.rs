@@ -64,17 +64,16 @@ pub(super) const OF_COMPARISONS: [for<'a> fn(&'a Comparison) -> Vec<Sketch<'a>>;
 pub(super) struct Kind {
     /// What the names of its figures begin with.
     pub(super) names: &'static [&'static str],
-    /// Whether those of its first name are drawn where none is named.
-    pub(super) is_usual: bool,
+    /// The word for those of its figures that are drawn where none is named.
+    pub(super) usual: Option<&'static str>,
     /// The figures that it has of a sweep.
     pub(super) sketches: for<'a> fn(&Sweep<'a>) -> Vec<Sketch<'a>>,
 }
 
-/// The kinds that are drawn where none is named.
+/// Words for the figures that are drawn where none is named.
 pub(super) fn usual() -> Vec<String> {
-    let kinds = OF_SWEEPS.iter().filter(|kind| kind.is_usual);
-    let names = kinds.filter_map(|kind| kind.names.first());
-    names.map(|&name| name.to_owned()).collect()
+    let words = OF_SWEEPS.iter().filter_map(|kind| kind.usual);
+    words.map(str::to_owned).collect()
 }
 
 /// A sweep with the points that figures are drawn at.
@@ -154,6 +153,8 @@ pub(super) type Drawn = Option<Figure>;
 pub(super) struct Sketch<'a> {
     /// Its name: that of its file without the extension.
     pub(super) name: String,
+    /// Whether it shows one of the values that another figure shows together.
+    is_single: bool,
     draw: Box<dyn Fn(&Print<'_>) -> Drawn + Sync + 'a>,
 }
 
@@ -165,8 +166,24 @@ impl<'a> Sketch<'a> {
     ) -> Self {
         Self {
             name: name.into(),
+            is_single: false,
             draw: Box::new(draw),
         }
+    }
+
+    /// The same figure, of one of the values that another one shows together.
+    pub(super) fn of_one_value(self) -> Self {
+        Self {
+            is_single: true,
+            ..self
+        }
+    }
+
+    /// Whether a word is for it.
+    pub(super) fn is_named_by(&self, word: &str) -> bool {
+        let kind = names::of_sheets(word).filter(|_| !self.is_single);
+        names::matches(word, &self.name)
+            || kind.is_some_and(|kind| names::matches(kind, &self.name))
     }
 
     /// Draws it, on several pages where one has no room for it; none where there is nothing to see.

@@ -29,7 +29,7 @@ const BESIDE: f64 = 6.0;
 
 pub(super) const KIND: Kind = Kind {
     names: &["pairs"],
-    is_usual: false,
+    usual: None,
     sketches: |sweep| {
         let way = "as a surface and as a map";
         let pairs = sweep.pairs();

@@ -32,7 +32,7 @@ const AT_END: f64 = 1e-6;
 /// A peak diagram an observed marginal.
 pub(super) const KIND: Kind = Kind {
     names: &["peaks"],
-    is_usual: false,
+    usual: None,
     sketches: |sweep| sweep.of_marginals("peaks", draw),
 };
 

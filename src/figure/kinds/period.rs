@@ -24,7 +24,7 @@ const AROUND: f64 = 0.05;
 /// A figure of each state of which three phases are watched.
 pub(super) const KIND: Kind = Kind {
     names: &["period"],
-    is_usual: false,
+    usual: None,
     sketches: |sweep| {
         let (result, chosen) = (sweep.result, sweep.chosen.clone());
         let sketch = |(axis, name): (usize, &str)| {

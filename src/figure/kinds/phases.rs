@@ -16,7 +16,7 @@ const FEWEST: usize = 2;
 /// A sheet of each state of which two phases are watched.
 pub(super) const KIND: Kind = Kind {
     names: &["phases"],
-    is_usual: false,
+    usual: None,
     sketches: |sweep| {
         let (result, chosen) = (sweep.result, sweep.chosen.clone());
         let states = sweep.family().states_on_lines();

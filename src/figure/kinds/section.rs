@@ -18,7 +18,7 @@ use crate::figure::print::Print;
 
 pub(super) const KIND: Kind = Kind {
     names: &["section", "conditional"],
-    is_usual: false,
+    usual: None,
     sketches,
 };
 

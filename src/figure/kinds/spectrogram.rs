@@ -29,7 +29,7 @@ const USUAL: f64 = 505.0;
 /// A figure of each power spectrum that is asked for.
 pub(super) const KIND: Kind = Kind {
     names: &["spectrogram"],
-    is_usual: true,
+    usual: Some("spectrogram"),
     sketches: |sweep: &Sweep<'_>| {
         let result = sweep.result;
         let sketch = |one: SpectrumOf| {

@@ -21,7 +21,7 @@ const BESIDE: f64 = 14.0;
 /// A figure of each spectrum that is asked for, and of each correlation.
 pub(super) const KIND: Kind = Kind {
     names: &["spectrum", "correlation"],
-    is_usual: true,
+    usual: Some("spectrum"),
     sketches,
 };
 

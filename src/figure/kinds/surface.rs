@@ -32,7 +32,7 @@ pub(super) const COARSE: usize = 90;
 
 pub(super) const KIND: Kind = Kind {
     names: &["surface"],
-    is_usual: false,
+    usual: None,
     sketches,
 };
 

@@ -16,7 +16,7 @@ const LEAST: usize = 3;
 /// A figure of each passage with enough times.
 pub(super) const KIND: Kind = Kind {
     names: &["survival"],
-    is_usual: true,
+    usual: Some("survival"),
     sketches,
 };
 

@@ -72,6 +72,14 @@ pub(crate) fn matches(word: &str, figure: &str) -> bool {
     word == "all" || rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
 }
 
+/// What a word ends with that names the sheets of a kind, and no figure of a single value: `joint_sheets`.
+const SHEETS: &str = "_sheets";
+
+/// The kind whose sheets a word names; `None` of a word that names other figures.
+pub(crate) fn of_sheets(word: &str) -> Option<&str> {
+    word.strip_suffix(SHEETS)
+}
+
 /// Letters, digits, `.`, `-` and `_`; everything else becomes `_`.
 fn safe(name: &str) -> String {
     let letter = |c: char| match c {

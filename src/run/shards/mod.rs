@@ -51,6 +51,27 @@ pub(crate) struct Holders {
 }
 
 impl Holders {
+    /// Whether these are the shards that an unfinished merge in a folder has begun with: of one that was computed anew
+    /// since, its tables tell what the shard does not hold any more.
+    ///
+    /// # Errors
+    /// [`RunError::Journal`], [`RunError::Read`].
+    pub(crate) fn are_those_of(&self, run: &Path) -> Result<bool, RunError> {
+        let Some(journal) = Journal::look(run)? else {
+            return Ok(true);
+        };
+        let begun_with = journal.shards::<Option<HoldingShard>>()?;
+        let is_same =
+            |(here, there): (&Option<HoldingShard>, &Option<HoldingShard>)| match (here, there) {
+                (Some(here), Some(there)) => here.is(there),
+                (here, there) => here.is_none() && there.is_none(),
+            };
+        // One that was stopped before it named its shards has none of their points.
+        let is_begun = !begun_with.is_empty();
+        let mut pairs = self.shards.iter().zip(&begun_with);
+        Ok(!is_begun || self.shards.len() == begun_with.len() && pairs.all(is_same))
+    }
+
     /// Tells a journal of the shards.
     ///
     /// # Errors

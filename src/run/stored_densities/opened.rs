@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::super::arrays::DensityPart;
-use super::{Observed, StoredKink};
+use super::super::arrays::{DensityPart, EndNumber};
+use super::{Observed, StoredKink, StoredNumber};
 use crate::density::{NEGLIGIBLE, Observable, layout_axis};
 use crate::run::place::check_files;
 use crate::run::zarr::StoredArray;
@@ -115,8 +115,7 @@ impl Opened {
             observable,
             error: self.shaped(&DensityPart::Error.name(family, observable), &shape)?,
             second: self.optional(&DensityPart::Second.name(family, observable), &shape)?,
-            truncated: self.optional(&DensityPart::Truncated.name(family, observable), &[])?,
-            end_level: self.optional(&DensityPart::EndLevel.name(family, observable), &[])?,
+            range_ends: self.range_ends(&name)?,
             closed: self.optional(&DensityPart::Closed.name(family, observable), &shape)?,
             replicates: self.optional(&DensityPart::Replicates.name(family, observable), &shape)?,
             centre: centre.filter(|centre| centre.len() == axes.len()),
@@ -125,6 +124,59 @@ impl Opened {
             axes,
             density,
         })
+    }
+
+    /// The numbers that the ends of the ranges leave of a density, by the name of its array. Stores of earlier versions
+    /// have an array of each.
+    fn range_ends(
+        &self,
+        density: &str,
+    ) -> Result<[Option<StoredNumber>; EndNumber::ALL.len()], RunError> {
+        let mut found = EndNumber::ALL.map(|_| None);
+        let together = self.optional(arrays::RANGE_ENDS, &[])?;
+        for (number, found) in EndNumber::ALL.into_iter().zip(&mut found) {
+            let place = match &together {
+                None => None,
+                Some(array) => self.place_of(array, density, number)?,
+            };
+            *found = match (&together, place) {
+                (Some(array), Some(place)) => Some(StoredNumber {
+                    array: array.clone(),
+                    place,
+                }),
+                _ => {
+                    let own = format!("{density}_{}", number.word());
+                    let array = self.optional(&own, &[])?;
+                    array.map(|array| StoredNumber { array, place: 0 })
+                }
+            };
+        }
+        Ok(found)
+    }
+
+    /// Where in a row of the array of all densities a number stands; `None` of a density that is not in it.
+    fn place_of(
+        &self,
+        array: &StoredArray,
+        density: &str,
+        number: EndNumber,
+    ) -> Result<Option<usize>, RunError> {
+        let place = |attribute: &str, word: &str| -> Option<(usize, usize)> {
+            let words = array.attributes().get(attribute)?.as_array()?;
+            let place = words.iter().position(|one| one.as_str() == Some(word));
+            Some((place?, words.len()))
+        };
+        let row = place(arrays::RANGE_ENDS_DENSITIES, density);
+        let column = place(arrays::RANGE_ENDS_NUMBERS, number.word());
+        let (Some((row, rows)), Some((column, columns))) = (row, column) else {
+            return Ok(None);
+        };
+        if array.shape()[1..] != [rows as u64, columns as u64] {
+            let (name, found) = (arrays::RANGE_ENDS, array.shape());
+            let words = format!("array `{name}` has shape {found:?}, not that of what it names");
+            return Err(self.unreadable(words));
+        }
+        Ok(Some(row * columns + column))
     }
 
     /// The kinks of a density in the order of their numbers.

@@ -2,6 +2,8 @@
 
 mod faults;
 mod one_axis;
+mod range_ends;
+mod unfinished;
 
 use super::store::write_store;
 use super::zarr::StoredArray;
