@@ -62,7 +62,7 @@ fn at_end(estimated: &EstimatedDensity, cell: usize, kind: FeatureKind) -> Optio
     let centre = field.centre(cell);
     (0..centre.len()).find_map(|k| field.end_near(k, centre[k]))?;
     let critical = Critical::near(&field, &centre, kind, field.values())?;
-    critical.is_at_end.then(|| Vertex {
+    critical.is_at_end.then_some(Vertex {
         density: critical.jet.value,
         position: critical.position,
     })
