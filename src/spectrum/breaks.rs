@@ -10,6 +10,9 @@ use nalgebra::{Matrix4, Vector4};
 
 use crate::space::{Axis, CellSpace};
 
+/// A function of the state.
+type Observable<'a> = &'a (dyn Fn(&[f64]) -> f64 + Sync);
+
 /// A second difference of an observable over nodes from this share of the largest difference beside it on may be a
 /// break; of what is smooth it is a small share.
 const SHARP: f64 = 0.1;
@@ -57,7 +60,7 @@ pub(super) struct Sharp {
 pub(super) fn summable(
     space: &CellSpace,
     still: &[usize],
-    observable: &(dyn Fn(&[f64]) -> f64 + Sync),
+    observable: Observable<'_>,
     values: &[f64],
 ) -> Option<Sharp> {
     let mut sharp: Option<Sharp> = None;
@@ -213,7 +216,7 @@ mod tests {
         for place in [0.0, 0.1, -0.125, 0.3437] {
             let step = |state: &[f64]| f64::from(u8::from(state[0] > place));
             let ramp = |state: &[f64]| (state[0] - place).max(0.0);
-            let both: [&(dyn Fn(&[f64]) -> f64 + Sync); 2] = [&step, &ramp];
+            let both: [Observable<'_>; 2] = [&step, &ramp];
             for observable in both {
                 let at = |cell| observable(&space.place(cell));
                 let values: Vec<f64> = (0..16).map(at).collect();
