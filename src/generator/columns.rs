@@ -58,12 +58,6 @@ impl LineRates {
         })
     }
 
-    /// Whether the slope of the density jumps at one of them.
-    pub(crate) fn has_jumps(&self) -> bool {
-        let mut breaks = self.axes.iter().flat_map(|axis| &axis.breaks);
-        breaks.any(|at| at.slope_jumps)
-    }
-
     /// The matrix and the escape.
     ///
     /// # Errors
@@ -114,19 +108,55 @@ impl LineRates {
 
     /// Q x, summed as by the columns of the matrix, to the bit.
     pub(crate) fn product(&self, x: &[f64]) -> Vec<f64> {
+        self.product_of(x, |_| true)
+    }
+
+    /// The same of some columns.
+    pub(super) fn product_of(&self, x: &[f64], wanted: impl Fn(&Coordinates) -> bool) -> Vec<f64> {
         let (mut all_rows, mut all_values) = (Vec::new(), Vec::new());
         let mut product = vec![0.0; x.len()];
         let mut place = self.place(0);
         for (cell, weight) in x.iter().enumerate() {
-            let entries = self.entries(&place);
-            if all_rows.len() < entries {
-                all_rows.resize(entries, 0);
-                all_values.resize(entries, 0.0);
+            if wanted(&place) {
+                let entries = self.entries(&place);
+                if all_rows.len() < entries {
+                    all_rows.resize(entries, 0);
+                    all_values.resize(entries, 0.0);
+                }
+                let (rows, values) = (&mut all_rows[..entries], &mut all_values[..entries]);
+                self.fill(cell, &place, rows, values);
+                for (&row, value) in rows.iter().zip(&*values) {
+                    product[row] += value * weight;
+                }
             }
-            let (rows, values) = (&mut all_rows[..entries], &mut all_values[..entries]);
-            self.fill(cell, &place, rows, values);
-            for (&row, value) in rows.iter().zip(&*values) {
-                product[row] += value * weight;
+            self.step(&mut place);
+        }
+        product
+    }
+
+    /// The same of what moves along all axes but one.
+    pub(super) fn product_across(
+        &self,
+        x: &[f64],
+        axis: usize,
+        wanted: impl Fn(&Coordinates) -> bool,
+    ) -> Vec<f64> {
+        let mut product = vec![0.0; x.len()];
+        let mut place = self.place(0);
+        for (cell, weight) in x.iter().enumerate() {
+            if wanted(&place) {
+                for other in (0..self.axes.len()).filter(|other| *other != axis) {
+                    let (stride, own) = (self.strides[other], place[other]);
+                    let mut left = 0.0;
+                    let reached = self.reached(&place, other);
+                    let escape = self.each_rate(&place, other, reached, |to, rate| {
+                        if to != own {
+                            product[cell + to * stride - own * stride] += rate * weight;
+                            left += rate;
+                        }
+                    });
+                    product[cell] -= (left + escape) * weight;
+                }
             }
             self.step(&mut place);
         }

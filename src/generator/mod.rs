@@ -47,6 +47,7 @@ mod scheme;
 mod shared_noise;
 mod smooth;
 mod spectral_viscosity;
+mod spurious;
 
 pub(crate) use absorbing::{
     AbsorbingGenerator, Closure, Ending, RateChange, assemble_absorbing, assemble_with_changes,
@@ -69,6 +70,7 @@ pub use scheme::AdvectiveScheme;
 pub(crate) use scheme::Dissipation;
 pub(crate) use shared_noise::{add_shared_noise, at_nodes};
 pub(crate) use spectral_viscosity::add_spectral_viscosity;
+pub(crate) use spurious::spurious_at_breaks;
 
 use sprs::CsMat;
 

@@ -95,7 +95,7 @@ impl<'a> Crossings<'a> {
         states: Vec<Lanes>,
     ) -> Self {
         Self {
-            seen: [FROM, TO].map(|region| borders[region].at(&states)),
+            seen: [FROM, TO].map(|region| borders[region].at(&states, time_step)),
             borders,
             stepper,
             time_step,
@@ -134,7 +134,7 @@ impl<'a> Crossings<'a> {
         let states = self.states.clone();
         self.stepper.advance_with(&mut self.states, 0, 1, normals);
         let before = self.seen;
-        self.seen = [FROM, TO].map(|region| self.borders[region].at(&self.states));
+        self.seen = [FROM, TO].map(|region| self.borders[region].at(&self.states, self.time_step));
         self.passing = [FROM, TO].map(|region| {
             let levels = [&before[region].0, &self.seen[region].0];
             self.borders[region].passing([&states, &self.states], levels)

@@ -4,6 +4,10 @@
 //! Brownian bridge that is so with probability exp(-2 a b/dt), with a and b the levels at both ends over the strength
 //! of the noise that acts on them there (E. Gobet, Stochastic Processes and their Applications 87, 2000). A path ends
 //! when the probability that it has not been inside falls below a random number of its own.
+//!
+//! The distance from the border is the level over the strength of the noise that acts on it, where that does not depend
+//! on the state. Elsewhere the strength is its mean on the way to the border: the border of cos(πθ) > c is where that
+//! of |θ| < a is.
 
 use super::batch::{Limits, Purpose, key};
 use crate::MAX_DIMENSION;
@@ -13,6 +17,16 @@ use crate::system::{BoundQuantity, LANES, Lanes, System};
 
 /// Distance over which the slope of a level is taken, over the range of an axis.
 const SLOPE: f64 = 1e-7;
+
+/// Distance from a border up to which it is looked at how the strength of the noise on the level changes toward it, in
+/// standard deviations of a step: what is farther off does not meet it.
+const NEAR: f64 = 16.0;
+
+/// Strengths halfway to a border that are so many times larger or smaller are those of another part of it.
+const ALIKE: f64 = 2.0;
+
+/// Share by which strengths differ that are the same.
+const SAME: f64 = 1e-6;
 
 /// The region at whose border paths end.
 #[derive(Debug, Clone, Copy)]
@@ -39,6 +53,18 @@ pub(super) struct Border<'a> {
     pub(super) noisy: Vec<(usize, f64)>,
     /// Whether the level depends on one axis alone, so that whatever comes to the other side passes through the region.
     pub(super) is_of_one_axis: bool,
+    /// Whether noise acts on the level with the same strength everywhere.
+    is_even: bool,
+}
+
+/// The level of a region for a batch of states, with what noise does to it.
+struct Slopes {
+    levels: Lanes,
+    /// The root of the variance that noise gives the level per unit of time.
+    speeds: Lanes,
+    /// One a noisy axis: by how much a state moves along it where noise alone moves it up the level as fast as it can,
+    /// times the speed.
+    ways: Vec<Lanes>,
 }
 
 impl<'a> Border<'a> {
@@ -49,15 +75,34 @@ impl<'a> Border<'a> {
     ) -> Self {
         let axes = space.axes().iter().zip(until.states()).enumerate();
         let noisy = axes.filter(|(axis, (_, matters))| **matters && system.is_noisy(*axis));
-        Self {
+        let mut border = Self {
             noisy: noisy
                 .map(|(number, (axis, _))| (number, SLOPE * (axis.to() - axis.from())))
                 .collect(),
             is_of_one_axis: until.states().iter().filter(|matters| **matters).count() == 1,
+            is_even: true,
             system,
             until,
             exits,
+        };
+        border.is_even = border.is_even_in(space);
+        border
+    }
+
+    /// Whether noise acts on the level with the same strength in states all over the cells.
+    fn is_even_in(&self, space: &CellSpace) -> bool {
+        let cells = space.n_cells();
+        let mut states = vec![[0.0; LANES]; space.dimension()];
+        for lane in 0..LANES {
+            let node = space.node(lane * cells / LANES + cells / (2 * LANES));
+            for (lanes, value) in states.iter_mut().zip(node) {
+                lanes[lane] = value;
+            }
         }
+        let speeds = self.slopes(&states).speeds;
+        let largest = speeds.iter().copied().fold(0.0, f64::max);
+        let least = speeds.iter().copied().fold(f64::INFINITY, f64::min);
+        largest - least <= SAME * largest
     }
 
     /// The part of the region that a path enters which is in a state, or was inside on its way there: the nearest one.
@@ -67,27 +112,82 @@ impl<'a> Border<'a> {
         least.map_or(0, |(part, _)| part)
     }
 
-    /// Levels of a batch of states, and the root of the variance that noise gives each per unit of time.
-    pub(super) fn at(&self, states: &[Lanes]) -> (Lanes, Lanes) {
+    /// Levels of a batch of states, and the strength of the noise on each on the way to the border: levels over that
+    /// are distances, in units of what noise does in a unit of time.
+    pub(super) fn at(&self, states: &[Lanes], time_step: f64) -> (Lanes, Lanes) {
+        let Slopes {
+            levels,
+            speeds,
+            ways,
+        } = self.slopes(states);
+        if self.is_even {
+            return (levels, speeds);
+        }
+        let reach = NEAR * time_step.sqrt();
+        let steps: Lanes = std::array::from_fn(|lane| {
+            let distance = levels[lane] / speeds[lane];
+            match distance.abs() < reach {
+                true => 0.5 * distance,
+                false => 0.0,
+            }
+        });
+        if steps.iter().all(|step| *step == 0.0) {
+            return (levels, speeds);
+        }
+        let mut halfway = states.to_vec();
+        for (&(axis, _), way) in self.noisy.iter().zip(&ways) {
+            for lane in 0..LANES {
+                if steps[lane] != 0.0 {
+                    halfway[axis][lane] -= steps[lane] * way[lane] / speeds[lane];
+                }
+            }
+        }
+        let there = self.slopes(&halfway).speeds;
+        let mean = |lane: usize| match steps[lane] == 0.0 {
+            true => speeds[lane],
+            false => mean_speed(speeds[lane], there[lane]),
+        };
+        (levels, std::array::from_fn(mean))
+    }
+
+    fn slopes(&self, states: &[Lanes]) -> Slopes {
         let levels = self.until.values(states);
         let mut squares = [0.0; LANES];
-        if self.noisy.is_empty() {
-            return (levels, squares);
-        }
-        let mut moved = states.to_vec();
+        let mut ways = Vec::with_capacity(self.noisy.len());
+        let mut moved = match self.noisy.is_empty() {
+            true => Vec::new(),
+            false => states.to_vec(),
+        };
         for &(axis, shift) in &self.noisy {
             moved[axis].iter_mut().for_each(|value| *value += shift);
             let beside = self.until.values(&moved);
             moved[axis] = states[axis];
+            let mut way = [0.0; LANES];
             for noise in self.system.noises_on(axis) {
                 let amplitudes = noise.amplitudes(0.0, states);
                 for lane in 0..LANES {
                     let slope = (beside[lane] - levels[lane]) / shift;
                     squares[lane] += (slope * amplitudes[lane]).powi(2);
+                    way[lane] += slope * amplitudes[lane] * amplitudes[lane];
                 }
             }
+            ways.push(way);
         }
-        (levels, squares.map(f64::sqrt))
+        Slopes {
+            levels,
+            speeds: squares.map(f64::sqrt),
+            ways,
+        }
+    }
+}
+
+/// The mean of the strength of noise on a level on the way to its border, from that at a state and that at half of the
+/// way as the first one has it, where the strength changes evenly: the level is a parabola then.
+fn mean_speed(here: f64, halfway: f64) -> f64 {
+    let is_alike = halfway < ALIKE * here && here < ALIKE * halfway;
+    match is_alike {
+        true => 0.5 * (here + (here * (4.0 * halfway - 3.0 * here).max(0.0)).sqrt()),
+        false => here,
     }
 }
 
@@ -294,7 +394,7 @@ impl<'a> Walk<'a> {
 
     /// Looks at the border from where paths are.
     pub(super) fn look(&mut self) {
-        (self.levels, self.speeds) = self.border.at(&self.states);
+        (self.levels, self.speeds) = self.border.at(&self.states, self.time_step);
     }
 
     /// Gives up paths that have gone on for the longest time; says how many have run away.

@@ -73,6 +73,8 @@ pub(super) struct Estimate {
     pub(super) change: f64,
     /// What else is known of its error.
     pub(super) error: f64,
+    /// Whether it falls with the width of cells itself, and not with its square.
+    pub(super) is_of_first_order: bool,
 }
 
 impl Estimate {
@@ -87,7 +89,11 @@ pub(super) fn combined(finest: &[Estimate], fewer: &[Vec<Estimate>]) -> Vec<(f64
     let known = finest.iter().enumerate().map(|(number, one)| {
         let value = one.extrapolation();
         let mut error = DAMPED * one.change.abs() + one.error;
-        for (others, (_, times)) in fewer.iter().zip(FEWER) {
+        for (others, (factor, times)) in fewer.iter().zip(FEWER) {
+            let times = match one.is_of_first_order {
+                true => factor / (1.0 - factor),
+                false => times,
+            };
             let other = others.get(number).map_or(f64::NAN, Estimate::extrapolation);
             let off = MARGIN * times * (value - other).abs();
             error = if off.is_nan() {

@@ -24,6 +24,8 @@ pub(super) struct Grid {
     pub(super) full: CsMat<f64>,
     /// The same with half of the dissipation of advective fluxes.
     pub(super) half: CsMat<f64>,
+    /// Axes of cells along which no noise acts.
+    pub(super) still: Vec<usize>,
     /// The axis of the phase of a periodic force, and its angular frequency.
     force: Option<(usize, f64)>,
 }
@@ -50,7 +52,10 @@ impl Grid {
         );
         let (full, half) = (full?.matrix, half?.matrix);
         let force = phase.map(|axis| (axis, turning_rate(system.as_ref(), &space, axis)));
+        let axes = space.axes().iter().enumerate();
+        let still = axes.filter(|(number, axis)| !axis.is_modes() && !system.is_noisy(*number));
         Ok(Self {
+            still: still.map(|(number, _)| number).collect(),
             space,
             full,
             half,

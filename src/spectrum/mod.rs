@@ -88,6 +88,7 @@
 //! | errors from half of the dissipation and fewer cells | `errors.rs` |
 
 mod at_frequency;
+mod breaks;
 mod carried;
 mod errors;
 mod grid;

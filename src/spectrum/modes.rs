@@ -164,6 +164,7 @@ fn discriminant(slowest: &[GridMode]) -> Option<Estimate> {
             value: -frequency * frequency,
             change: -2.0 * frequency * first.change.im,
             error: 2.0 * frequency.abs() * first.error,
+            is_of_first_order: false,
         });
     }
     let second = slowest.get(1).filter(|one| one.value.im == 0.0)?;
@@ -172,5 +173,6 @@ fn discriminant(slowest: &[GridMode]) -> Option<Estimate> {
         value: half * half,
         change: half * (first.change.re - second.change.re),
         error: half.abs() * (first.error + second.error),
+        is_of_first_order: false,
     })
 }

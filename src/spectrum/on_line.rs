@@ -193,7 +193,9 @@ fn numbers(
             .map(|pole| pole.norm())
             .fold(f64::INFINITY, f64::min);
         let highest = question.frequencies.last().copied().unwrap_or(0.0);
-        all.extend(features_of(model, one, highest.max(slowest)));
+        let covariance = model.covariance(one, one);
+        let upto = highest.max(slowest);
+        all.extend(features_of(model, (one, covariance), upto));
     }
     all.extend(model.correlations((one, other), step, count).0);
     all

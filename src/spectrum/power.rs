@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use super::breaks::summable;
 use super::errors::{Estimate, Worked, combined, on_grids, smoothed};
 use super::grid::Grid;
 use super::motion::Motion;
@@ -207,19 +208,33 @@ fn on_grid(
         let at = |cell| observable(&grid.space.place(cell));
         (0..cells).map(at).collect()
     });
-    let values: Vec<Vec<f64>> = values.collect();
+    let mut values: Vec<Vec<f64>> = values.collect();
+    // Spectra are those of values that make sums integrals; at no lag the covariance is that of the values themselves.
+    let mut of_spectra: Vec<usize> = (0..values.len()).collect();
+    let mut jumps = vec![false; values.len()];
+    for (number, observable) in question.observables.iter().enumerate() {
+        if let Some(found) = summable(&grid.space, &grid.still, *observable, &values[number]) {
+            of_spectra[number] = values.len();
+            jumps[number] = found.jumps;
+            values.push(found.values);
+        }
+    }
     let resolvent = Resolvent::new(grid, &values, (question.frequencies, begun), motion, solver)?;
     let resolvent = resolvent.ok_or(SpectrumError::Still)?;
     let [full, half, fewer] = &resolvent.transfers;
     let mut all = Vec::new();
     for &pair in question.pairs {
-        let numbers = [full, half, fewer].map(|transfer| numbers(transfer, pair, question, motion));
-        let ends = of_ends(&resolvent, pair, question, &numbers[0]);
+        let pairs = [pair, (of_spectra[pair.0], of_spectra[pair.1])];
+        let numbers =
+            [full, half, fewer].map(|transfer| numbers(transfer, pairs, question, motion));
+        let ends = of_ends(&resolvent, pairs, question, &numbers[0]);
         for (number, &value) in numbers[0].iter().enumerate() {
             all.push(Estimate {
                 value,
                 change: numbers[1][number] - value,
                 error: (numbers[2][number] - value).abs() + ends[number],
+                // States that pass a jump slowly are seen by few cells.
+                is_of_first_order: jumps[pair.0] || jumps[pair.1],
             });
         }
     }
@@ -230,24 +245,28 @@ fn on_grid(
     Ok((found, resolvent.work))
 }
 
-/// The numbers from which [`Features`] are told, of a power spectrum up to a frequency.
-pub(super) fn features_of(transfer: &Transfer, one: usize, highest: f64) -> [f64; FEATURES] {
+/// The numbers from which [`Features`] are told, of a power spectrum up to a frequency and the variance.
+pub(super) fn features_of(
+    transfer: &Transfer,
+    (one, variance): (usize, f64),
+    highest: f64,
+) -> [f64; FEATURES] {
     let shape = Shape::new(transfer, one, highest);
     let peak = Peak::of(&shape);
     let [at_zero, _, bend] = transfer.power_and_slopes(0.0, one);
     [
         peak.map_or(f64::NAN, |peak| peak.frequency),
         peak.and_then(|peak| peak.width).unwrap_or(f64::NAN),
-        0.5 * at_zero / transfer.covariance(one, one),
+        0.5 * at_zero / variance,
         bend / at_zero,
         steepest_rise(&shape).unwrap_or(f64::NAN),
     ]
 }
 
-/// The numbers of a pair by one model.
+/// The numbers of a pair by one model: of its observables, and of what stands for them in spectra.
 fn numbers(
     transfer: &Transfer,
-    (one, other): (usize, usize),
+    [pair, (one, other)]: [(usize, usize); 2],
     question: &PowerQuestion<'_>,
     motion: &Motion,
 ) -> Vec<f64> {
@@ -257,21 +276,23 @@ fn numbers(
     if one == other {
         let highest = question.frequencies.last().copied().unwrap_or(0.0);
         all = frequencies.map(|&at| transfer.power(at, one)).collect();
-        all.extend(features_of(transfer, one, highest.max(motion.rate)));
+        let variance = transfer.covariance(pair.0, pair.0);
+        let upto = highest.max(motion.rate);
+        all.extend(features_of(transfer, (one, variance), upto));
     } else {
         let cross = frequencies.map(|&at| transfer.cross(at, (one, other)));
         let cross: Vec<_> = cross.collect();
         all = cross.iter().map(|value| value.re).collect();
         all.extend(cross.iter().map(|value| value.im));
     }
-    all.extend(transfer.correlations((one, other), step, count).0);
+    all.extend(transfer.correlations(pair, step, count).0);
     all
 }
 
 /// What the ends of the range do to each of the numbers, at most.
 fn of_ends(
     resolvent: &Resolvent,
-    (one, other): (usize, usize),
+    [pair, (one, other)]: [(usize, usize); 2],
     question: &PowerQuestion<'_>,
     numbers: &[f64],
 ) -> Vec<f64> {
@@ -308,7 +329,7 @@ fn of_ends(
     let integral: f64 = intervals
         .map(|(at, off)| 0.5 * (at[1] - at[0]) * (off[0] + off[1]))
         .sum();
-    let (_, left_out) = resolvent.transfers[0].correlations((one, other), 0.0, 0);
+    let (_, left_out) = resolvent.transfers[0].correlations(pair, 0.0, 0);
     all.resize(numbers.len(), integral / PI + left_out);
     all
 }

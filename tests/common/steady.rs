@@ -6,7 +6,7 @@ use std::sync::Arc;
 use pbif::generator::{AdvectiveScheme, GeneratorOptions, assemble};
 use pbif::space::{Axis, CellSpace};
 use pbif::stationary::generator::{RateOptions, RateSolver};
-use pbif::system::{LANES, Lanes, Model, System, TypedModel};
+use pbif::system::{Interpretation, LANES, Lanes, Model, System, TypedModel};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256Plus;
 use rand_xoshiro::rand_core::SeedableRng;
@@ -16,6 +16,16 @@ use super::numbers::Numbers;
 
 /// A model by its equations and the amplitudes of its noises.
 pub(crate) fn model(equations: &[(&str, &str)], noise: &[(&str, &str)]) -> Arc<Model> {
+    typed(equations, noise).build().unwrap()
+}
+
+/// The same, in Itô's reading where noise depends on the state.
+pub(crate) fn ito_model(equations: &[(&str, &str)], noise: &[(&str, &str)]) -> Arc<Model> {
+    let model = typed(equations, noise).with_interpretation(Interpretation::Ito);
+    model.build().unwrap()
+}
+
+fn typed(equations: &[(&str, &str)], noise: &[(&str, &str)]) -> TypedModel {
     let names: Vec<&str> = equations.iter().map(|(axis, _)| *axis).collect();
     let mut model = TypedModel::new("model", "Model", names);
     for (axis, drift) in equations {
@@ -24,7 +34,7 @@ pub(crate) fn model(equations: &[(&str, &str)], noise: &[(&str, &str)]) -> Arc<M
     for (axis, amplitude) in noise {
         model = model.with_noise(*axis, [*amplitude]);
     }
-    model.build().unwrap()
+    model
 }
 
 /// Even cells from, to and how many along each axis.

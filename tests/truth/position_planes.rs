@@ -1,7 +1,7 @@
 //! Oscillators whose force jumps or bends at a plane of the position, where no noise acts across: means and deviations
 //! against Gibbs' density.
 
-use crate::common::sweeps::{measure, solved};
+use crate::common::sweeps::solved;
 use crate::random_systems::Dice;
 
 /// x'' = F(x) - γ x' + √(2 γ T) ξ, with its potential and the cells on ±4 × ±4.5, or those that are chosen.
@@ -69,7 +69,8 @@ impl Oscillator {
     }
 
     /// What is off, and the error that is stated: of the mean and the deviation of x and the deviation of x'.
-    fn errors(&self) -> [(&'static str, f64, f64); 3] {
+    /// What has no error, as where a density falls slowly in a range that is given, is left out.
+    fn errors(&self) -> Vec<(&'static str, f64, f64)> {
         let (damping, temperature) = (self.damping, self.temperature);
         let cells = self.cells.map_or_else(String::new, |n| {
             format!(
@@ -89,10 +90,13 @@ impl Oscillator {
             ("sd_x", deviation),
             ("sd_y", temperature.sqrt()),
         ]
-        .map(|(name, exact)| {
-            let (found, error) = measure(&point, name);
-            (name, (found - exact).abs(), error)
+        .into_iter()
+        .filter_map(|(name, exact)| {
+            let mut measures = point.report.measures.iter();
+            let found = measures.find(|one| one.name == name).unwrap();
+            Some((name, (found.value - exact).abs(), found.error?))
         })
+        .collect()
     }
 
     /// Mean and deviation of x by the midpoint rule, whose error at kinks is 1e-8.
@@ -121,11 +125,11 @@ fn beside_a_jump_means_converge_faster_than_with_the_square_of_the_width() {
     }
 }
 
-/// Stated errors of 40 systems that are thrown, half with a jump.
-fn ratios(seed: u64) -> Vec<f64> {
+/// What is off over what is stated, of systems that are thrown, half with a jump.
+fn ratios(seed: u64, count: usize) -> Vec<f64> {
     let mut dice = Dice::new(seed);
     let mut all = Vec::new();
-    for number in 0..40 {
+    for number in 0..count {
         let one = Oscillator::random(&mut dice, number % 2 == 0);
         for (name, off, error) in one.errors() {
             if off > error {
@@ -144,17 +148,26 @@ fn ratios(seed: u64) -> Vec<f64> {
 }
 
 #[test]
+fn stated_errors_beside_planes_of_the_position_hold() {
+    let ratios = ratios(0x0705_1710, 6);
+    assert!(ratios.iter().all(|ratio| *ratio <= 1.0), "{ratios:.2?}");
+    assert!(ratios.iter().any(|ratio| *ratio > 0.2), "{ratios:.2?}");
+}
+
+#[test]
 #[ignore = "a minute"]
 fn stated_errors_beside_planes_of_the_position_at_length() {
     let seed = std::env::var("OTHER_SEEDS").map_or(0, |text| text.parse().unwrap());
-    let ratios = ratios(0x0705_1710 + seed);
+    let ratios = ratios(0x0705_1710 + seed, 40);
     let above = ratios.iter().filter(|ratio| **ratio > 1.0).count();
+    let squares = ratios.iter().map(|ratio| ratio * ratio).sum::<f64>();
     println!(
-        "{} numbers, median {:.2}, {above} above 1, largest {:.2}",
+        "{} numbers, median {:.2}, root mean square {:.2}, {above} above 1, largest {:.2}",
         ratios.len(),
         ratios[ratios.len() / 2],
+        (squares / ratios.len() as f64).sqrt(),
         ratios[ratios.len() - 1]
     );
-    // Before the jump of the slope was made good it was three in four beside a jump, and fourteen times at most.
-    assert!(above * 5 < ratios.len() && ratios[ratios.len() * 49 / 50] < 3.0);
+    // By what schemes differ alone, twice that at jumps, it was one in ten.
+    assert!(above * 25 < ratios.len() && ratios[ratios.len() - 1] < 3.0);
 }

@@ -10,7 +10,7 @@ use pbif::sampling::Integrator;
 use pbif::space::{Axis, CellSpace};
 use pbif::system::regions;
 
-use crate::common::steady::model;
+use crate::common::steady::ito_model;
 use crate::common::sweeps::{measure, solved};
 use crate::passages::brownian_survival;
 
@@ -32,7 +32,7 @@ fn follow(
     (from, until): (From<'_>, &str),
     Effort(time_step, paths, longest): Effort,
 ) -> ExitTimes {
-    let model = model(equations, noise);
+    let model = ito_model(equations, noise);
     let values = model.values(&[]).unwrap();
     let bound = |text: &str| {
         let region = regions(&model, &[("one", text)]).unwrap().remove(0);
@@ -114,6 +114,37 @@ fn brownian_motion_leaves_an_interval_as_the_series_says() {
     let slope = (series(median.value + 0.01) - series(median.value - 0.01)) / 0.02;
     let exact = median.value - (series(median.value) - 0.5) / slope;
     holds("median", median, exact, 0.01);
+}
+
+#[test]
+fn a_border_is_where_it_is_however_its_level_or_the_noise_changes_toward_it() {
+    // Brownian motion from a place between two borders takes the product of the distances: of cos(πx), of x² and of
+    // ln x, which moves without drift.
+    let level = format!("cos(pi*x) > {:.17}", (0.1 * PI).cos());
+    let free = |from: &'static [f64], until: &str| {
+        follow(FREE, (From::State(from), until), Effort(0.01, 65_536, 40.0))
+    };
+    holds("cos", free(&[0.5], &level).numbers(&[], &[])[0], 0.56, 0.02);
+    holds(
+        "|x|",
+        free(&[0.5], "abs(x) < 0.1 or abs(x - 2) < 0.1").numbers(&[], &[])[0],
+        0.56,
+        0.02,
+    );
+    holds(
+        "square",
+        free(&[0.3], "x^2 > 1").numbers(&[], &[])[0],
+        0.91,
+        0.02,
+    );
+    let growing: (Given<'_>, Given<'_>) = (&[("x", "0.125 x")], &[("x", "0.5 x")]);
+    let found = follow(
+        growing,
+        (From::State(&[1.0]), "x > 2 or x < 0.5"),
+        Effort(0.02, 65_536, 100.0),
+    );
+    let exact = (2.0_f64.ln() / 0.5).powi(2);
+    holds("logarithm", found.numbers(&[], &[])[0], exact, 0.02);
 }
 
 #[test]

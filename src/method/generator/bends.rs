@@ -1,15 +1,15 @@
-//! What schemes err alike beside a plane at which a force turns, as that of a Hertz contact does.
+//! What schemes err alike beside a plane at which a force jumps, bends or turns, as that of a Hertz contact does.
 //!
 //! States cross the plane without noise, so that the density follows the force: where a derivative of the force is not
 //! continuous, one of the density is not either, and every stencil that reaches across takes its slope along the axis
 //! wrongly. To first order that is as if the force were another one in the cells beside the plane: f + δf, where δf is
 //! by how much the stencil's derivative of ∫ f dx is off. What this force would change of the steady state is a part of
-//! its error.
+//! its error. Beside planes past which no stencil reaches it is `generator::spurious` that tells what a scheme adds.
 
 use std::cmp::Ordering;
 
 use super::session::{GeneratorSession, PointSolve, ROUGH};
-use crate::generator::AdvectiveScheme;
+use crate::generator::{AdvectiveScheme, spurious_at_breaks};
 use crate::method::MethodError;
 use crate::method::structure::turning_surfaces;
 use crate::space::{Axis, CellSpace};
@@ -54,7 +54,13 @@ impl GeneratorSession {
         surfaces.retain(|surface| !lines.is_broken_at(surface.axis, surface.at));
         let unknowns = &solved.steady.mass;
         let scheme = self.source.options.scheme;
-        if let Some(flow) = spurious_flow((system, space), scheme, &surfaces, unknowns) {
+        let turning = spurious_flow((system, space), scheme, &surfaces, unknowns);
+        let broken = match lines.has_breaks() {
+            true => spurious_at_breaks(system, space, scheme, unknowns)
+                .map_err(|error| self.source.refused(error))?,
+            false => None,
+        };
+        if let Some(flow) = sum(turning, broken) {
             let more = match self.solver.response(&flow, unknowns, None, ROUGH) {
                 Err(RateError::Sensitivity) => return Ok(change),
                 more => more?,
@@ -65,6 +71,17 @@ impl GeneratorSession {
             pairs.for_each(|(change, more)| *change += sign * more);
         }
         Ok(change)
+    }
+}
+
+/// The sum of what there is.
+fn sum(one: Option<Vec<f64>>, other: Option<Vec<f64>>) -> Option<Vec<f64>> {
+    match (one, other) {
+        (Some(mut one), Some(other)) => {
+            one.iter_mut().zip(other).for_each(|(a, b)| *a += b);
+            Some(one)
+        }
+        (one, other) => one.or(other),
     }
 }
 

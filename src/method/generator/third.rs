@@ -37,10 +37,6 @@ impl GeneratorSession {
     }
 }
 
-/// Beside planes at which a force jumps all schemes take the density from the same few cells, so that what they err
-/// alike is as large as what they differ by.
-const SHARED_AT_JUMPS: f64 = 2.0;
-
 /// What another scheme changes, with the next term of the series by the factors of the first one. At planes at which a
 /// force bends or jumps the schemes are so far apart that the first term alone is half of it.
 pub(super) fn again(
@@ -51,11 +47,6 @@ pub(super) fn again(
 ) -> Result<Vec<f64>, MethodError> {
     let changed: Vec<f64> = unknowns.iter().zip(&change).map(|(u, du)| u + du).collect();
     let more = solver.response(&other.product(&changed), unknowns, None, ROUGH)?;
-    let share = if other.has_jumps() {
-        SHARED_AT_JUMPS
-    } else {
-        1.0
-    };
     let both = change.iter().zip(more);
-    Ok(both.map(|(a, b)| share * (a + b)).collect())
+    Ok(both.map(|(a, b)| a + b).collect())
 }
