@@ -48,6 +48,12 @@ impl LineRates {
         self.axes.iter().any(|axis| !axis.breaks.is_empty())
     }
 
+    /// Whether the slope of the density jumps at one of them.
+    pub(crate) fn has_jumps(&self) -> bool {
+        let mut breaks = self.axes.iter().flat_map(|axis| &axis.breaks);
+        breaks.any(|at| at.slope_jumps)
+    }
+
     /// Whether there is such a plane across an axis at a coordinate.
     pub(crate) fn is_broken_at(&self, axis: usize, at: f64) -> bool {
         let of_axis = &self.axes[axis];

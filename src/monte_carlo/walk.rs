@@ -25,6 +25,14 @@ const NEAR: f64 = 16.0;
 /// Strengths halfway to a border that are so many times larger or smaller are those of another part of it.
 const ALIKE: f64 = 2.0;
 
+/// Parts of a turn from one state to the next, along each axis: their multiples are spread evenly over a turn.
+const SPREAD: [f64; 4] = [
+    0.618_033_988_749_894_8,
+    0.414_213_562_373_095_1,
+    0.732_050_807_568_877_2,
+    0.236_067_977_499_789_7,
+];
+
 /// Share by which strengths differ that are the same.
 const SAME: f64 = 1e-6;
 
@@ -89,14 +97,15 @@ impl<'a> Border<'a> {
         border
     }
 
-    /// Whether noise acts on the level with the same strength in states all over the cells.
+    /// Whether noise acts on the level with the same strength in states all over the cells, which take other positions
+    /// along each axis.
     fn is_even_in(&self, space: &CellSpace) -> bool {
-        let cells = space.n_cells();
         let mut states = vec![[0.0; LANES]; space.dimension()];
-        for lane in 0..LANES {
-            let node = space.node(lane * cells / LANES + cells / (2 * LANES));
-            for (lanes, value) in states.iter_mut().zip(node) {
-                lanes[lane] = value;
+        let axes = space.axes().iter().zip(SPREAD.iter().cycle());
+        for (lanes, (axis, turn)) in states.iter_mut().zip(axes) {
+            for (lane, value) in lanes.iter_mut().enumerate() {
+                let share = ((lane as f64 + 0.5) * turn).fract();
+                *value = axis.nodes()[(share * axis.count() as f64) as usize];
             }
         }
         let speeds = self.slopes(&states).speeds;
@@ -413,5 +422,30 @@ impl<'a> Walk<'a> {
             self.going[lane] = is_near && (self.ages[lane] as f64) * self.time_step < longest;
         }
         runaways
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::Axis;
+    use crate::system::{TypedModel, regions};
+
+    #[test]
+    fn whether_noise_is_even_does_not_hang_on_the_number_of_cells() {
+        let model = TypedModel::new("free", "Free", vec!["x", "y"]).with_equation("x", "y");
+        let model = model.with_equation("y", "-x").with_noise("y", ["1"]);
+        let model = model.build().unwrap();
+        let system = model.system_with(&[]).unwrap();
+        for (text, is_even) in [("y^2/2 + x^4 > 2", false), ("x + 2 y > 1", true)] {
+            let region = regions(&model, &[("out", text)]).unwrap().remove(0);
+            let until = region.level().bind(&model.values(&[]).unwrap()).unwrap();
+            for counts in [[64, 64], [128, 100], [80, 80], [17, 64], [640, 3]] {
+                let axes = counts.map(|count| Axis::uniform(-2.0, 2.0, count).unwrap());
+                let space = CellSpace::new(axes.to_vec()).unwrap();
+                let border = Border::new(&*system, &space, (&until).into());
+                assert_eq!(border.is_even, is_even, "{text}: {counts:?}");
+            }
+        }
     }
 }

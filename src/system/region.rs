@@ -182,7 +182,8 @@ pub enum RegionFault {
     Parentheses,
     /// What is found in no density: a basin of no peak, along no axis, a ring along one.
     #[error(
-        "a region that is found is `peak N of AXIS`, with peaks counted from 1 along an axis: {}; or `peak N of`, `inside ring of` or `outside ring of` and the name of a joint density, as {}",
+        "a region that is found is `peak N of AXIS`, with peaks counted from 1 along an axis: {}; or `peak N of`, \
+         `inside ring of` or `outside ring of` and the name of a joint density, as {}",
         axes.join(", "), axes.get(..2).map_or_else(|| "xy".to_owned(), |two| joined_names(&[&two[0], &two[1]]))
     )]
     Basin {
@@ -256,8 +257,10 @@ pub fn regions(model: &Model, given: &[(&str, &str)]) -> Result<Vec<Region>, Vec
         match &basins[index] {
             None => {}
             Some(Ok(basin)) => {
-                let axis = model.axes[basin.axes.0].name.clone();
-                levels.push((axis, Vec::new()));
+                // The level says no more than on which states it depends.
+                let axes = std::iter::once(basin.axes.0).chain(basin.axes.1);
+                let names = axes.map(|axis| model.axes[axis].name.as_str());
+                levels.push((names.collect::<Vec<_>>().join(" + "), Vec::new()));
                 continue;
             }
             Some(Err(fault)) => {

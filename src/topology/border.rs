@@ -7,16 +7,26 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::closed::Cover;
 use super::field::{Field, Jet};
 use super::rim::top_of_ray;
-use super::valley::{Node, Trace, Valley, between};
+use super::valley::{Node, Trace, Valley, between, with_errors_beside};
 use super::{Detection, Feature, FeatureKind, Verdict};
 use crate::density::EstimatedDensity;
 
 /// Rays on which a crest is looked for.
 const RAYS: usize = 60;
 
-/// Points a cell at which the first ray is looked at.
+/// Jump of the crest from one ray to the next, in cells, beyond which it is not one curve.
+const LONGEST_JUMP: f64 = 4.0;
+
+/// Rays on either side of one whose errors are taken for its own.
+const BESIDE: usize = 2;
+
+/// Share of a cell within which the first coordinates of two peaks are the same.
+const SAME_COLUMN: f64 = 0.5;
+
+/// Points a cell at which rays are looked at.
 const POINTS_A_CELL: f64 = 2.0;
 
 /// Share of the mass of a basin that may lie in cells which climb to another peak than the border says.
@@ -106,20 +116,19 @@ fn broken_line(along: &str, nodes: &[(f64, f64)]) -> String {
 
 /// The borders between the basin of a peak of a joint density, counted from 1 in the order of their first coordinates,
 /// and those of others; `None` without the peak, without another one, and where what lies within the borders is not
-/// what climbs to the peak.
+/// what climbs to the peak; nor across a seam of an angle.
 pub(crate) fn basin(
     density: &EstimatedDensity,
     detection: &Detection,
     peak: usize,
 ) -> Option<Vec<Border>> {
-    let field = Field::new(density)?;
+    let field = field(density)?;
     let trace = Trace::new(&field, density)?;
-    let peaks = peaks(detection);
+    let peaks = peaks(&field, detection);
     let own = peak.checked_sub(1).filter(|&own| own < peaks.len())?;
     let climbs = trace.climbs(&peaks);
-    let valleys = trace.valleys(&climbs);
     let mut borders = Vec::new();
-    for valley in valleys.into_iter().filter(|one| one.parts.contains(&own)) {
+    for valley in trace.valleys(own, &climbs)? {
         let Valley {
             origin,
             direction,
@@ -140,7 +149,9 @@ pub(crate) fn basin(
         }
         borders.push(border);
     }
-    if borders.is_empty() {
+    let is_beyond = |at: &[f64; 2]| !borders.iter().all(|one| one.holds(*at));
+    let mut others = peaks.iter().enumerate().filter(|(peak, _)| *peak != own);
+    if borders.is_empty() || !others.all(|(_, at)| is_beyond(at)) {
         return None;
     }
     let masses = density.density.masses();
@@ -155,12 +166,25 @@ pub(crate) fn basin(
     (misplaced <= MISPLACED * whole).then_some(borders)
 }
 
-/// Places of the peaks that are there, in the order of their coordinates.
-fn peaks(detection: &Detection) -> Vec<[f64; 2]> {
+/// The density between its cells; `None` for one that has a seam.
+fn field(density: &EstimatedDensity) -> Option<Field<'_>> {
+    Field::new(density).filter(|_| Cover::of(density).is_none())
+}
+
+/// Places of the peaks that are there, in the order of their first coordinates; of those that differ by less than half
+/// a cell in them, in the order of the second ones.
+fn peaks(field: &Field<'_>, detection: &Detection) -> Vec<[f64; 2]> {
     let mut all: Vec<[f64; 2]> = of_kind(detection, FeatureKind::Peak)
         .filter_map(|peak| peak.position.get(..2)?.try_into().ok())
         .collect();
-    all.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    all.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let is_near = |one: &[f64; 2], other: &[f64; 2]| {
+        let width = field.cell_width(0, one[0]) * field.unit(0);
+        other[0] - one[0] < SAME_COLUMN * width
+    };
+    for column in all.chunk_by_mut(is_near) {
+        column.sort_by(|a, b| a[1].total_cmp(&b[1]));
+    }
     all
 }
 
@@ -170,9 +194,9 @@ fn of_kind(detection: &Detection, kind: FeatureKind) -> impl Iterator<Item = &Fe
 }
 
 /// The crest around the crater of a joint density, whose inside it bounds; `None` without a crater, with several, and
-/// where the crest is not met once on every ray from it.
+/// where the highest places on rays from it are no single curve.
 pub(crate) fn crest(density: &EstimatedDensity, detection: &Detection) -> Option<Border> {
-    let field = Field::new(density)?;
+    let field = field(density)?;
     let mut craters = of_kind(detection, FeatureKind::Crater);
     let (crater, None) = (craters.next()?, craters.next()) else {
         return None;
@@ -201,7 +225,7 @@ pub(crate) fn crest(density: &EstimatedDensity, detection: &Detection) -> Option
             error: off.sum(),
         }
     });
-    let nodes = nodes.collect();
+    let nodes = with_errors_beside(nodes.collect(), BESIDE);
     let units = [field.unit(0), field.unit(1)];
     Some(Border {
         origin,
@@ -238,7 +262,9 @@ fn radii_of(
         let (start, _) = heights.max_by(|a, b| a.1.total_cmp(&b.1))?;
         radii.push(top_of_ray(field, &at, direction, (start, cell), jet)?);
     }
-    Some(radii)
+    let jump = |ray: usize| (radii[ray] - radii[(ray + 1) % RAYS]).abs();
+    let is_one = (0..RAYS).all(|ray| jump(ray) <= LONGEST_JUMP * cell);
+    is_one.then_some(radii)
 }
 
 #[cfg(test)]

@@ -251,7 +251,7 @@ mod tests {
         let place = refine(&falling, 0, FeatureKind::Peak);
         assert_eq!(place.position, vec![0.0]);
         assert!((place.density - (1.0 - 0.125)).abs() < 1e-12);
-        // Convex from the end, 3 e^{-3x}: no vertex.
+        // Convex from the end, 3 e^{-3x}: the end itself is the place.
         let convex = averages(&axis, |x| -(-3.0 * x).exp());
         let place = refine(&convex, 0, FeatureKind::Peak);
         assert_eq!(place.position, vec![0.0]);

@@ -14,9 +14,14 @@ const PROGRESS: f64 = 0.1;
 /// Nodes on either side of a saddle.
 const NODES: usize = 24;
 
-/// Directions in which the way down from a saddle is looked for, over half a turn, and how far away, in cells.
+/// Directions in which the way down from a saddle is looked for, over half a turn.
 const DIRECTIONS: usize = 36;
+
+/// How far away it is looked for, in cells.
 const LOOK: f64 = 1.5;
+
+/// Points on either side of one whose errors are taken for its own.
+const BESIDE: usize = 6;
 
 /// Cells within which a higher one is looked for from a maximum of cells that is no peak.
 const REACH: usize = 4;
@@ -26,8 +31,6 @@ const ARRIVED: f64 = 2.0;
 
 /// A valley between the basins of two peaks.
 pub(super) struct Valley {
-    /// The numbers of the peaks.
-    pub(super) parts: [usize; 2],
     /// Its saddle.
     pub(super) origin: [f64; 2],
     /// Its direction there, in units of the standard deviations.
@@ -49,9 +52,10 @@ pub(super) struct Node {
 /// A joint density in which valleys are followed.
 pub(super) struct Trace<'a> {
     field: &'a Field<'a>,
-    estimated: &'a EstimatedDensity,
     /// Standard deviations of the axes.
     pub(super) units: [f64; 2],
+    /// The height up to which the density is not known.
+    negligible: f64,
     columns: usize,
 }
 
@@ -60,7 +64,7 @@ type Look<'a> = (usize, &'a [f64]);
 
 impl<'a> Trace<'a> {
     /// `None` where a standard deviation is zero.
-    pub(super) fn new(field: &'a Field<'a>, estimated: &'a EstimatedDensity) -> Option<Self> {
+    pub(super) fn new(field: &'a Field<'a>, estimated: &EstimatedDensity) -> Option<Self> {
         let masses = estimated.density.masses();
         let whole: f64 = masses.iter().sum();
         let mean = |of: &dyn Fn(&[f64]) -> f64| {
@@ -75,10 +79,11 @@ impl<'a> Trace<'a> {
         };
         let units = [deviation(0), deviation(1)];
         let columns = field.axes().last()?.count();
+        let negligible = estimated.negligible_height() * estimated.density.maximum();
         (units[0] > 0.0 && units[1] > 0.0).then_some(Self {
             field,
-            estimated,
             units,
+            negligible,
             columns,
         })
     }
@@ -141,15 +146,15 @@ impl<'a> Trace<'a> {
         nearest.filter(|one| one.1 <= ARRIVED).map(|one| one.0)
     }
 
-    /// The valleys between any two peaks, from what each cell climbs to. Where several saddles part the same two, the
-    /// valley of the highest is followed.
-    pub(super) fn valleys(&self, climbs: &[Option<usize>]) -> Vec<Valley> {
+    /// The valleys between a peak and others, from what each cell climbs to; `None` where one cannot be followed. Where
+    /// several saddles part the same two, the valley of the highest is followed.
+    pub(super) fn valleys(&self, own: usize, climbs: &[Option<usize>]) -> Option<Vec<Valley>> {
         let values = self.field.values();
         let mut highest: Vec<([usize; 2], usize)> = Vec::new();
-        for (cell, own) in climbs.iter().enumerate() {
-            let Some(own) = *own else { continue };
+        for (cell, part) in climbs.iter().enumerate() {
+            let Some(part) = *part else { continue };
             for other in self.window(cell, 1) {
-                let Some(beyond) = climbs[other].filter(|&beyond| beyond > own) else {
+                let Some(beyond) = climbs[other].filter(|&beyond| beyond > part) else {
                     continue;
                 };
                 // The way from one to the other is no higher than the lower of both.
@@ -158,7 +163,7 @@ impl<'a> Trace<'a> {
                 } else {
                     other
                 };
-                let parts = [own, beyond];
+                let parts = [part, beyond];
                 match highest.iter_mut().find(|one| one.0 == parts) {
                     Some(one) if values[one.1] < values[pass] => one.1 = pass,
                     Some(_) => {}
@@ -166,16 +171,12 @@ impl<'a> Trace<'a> {
                 }
             }
         }
-        let negligible = self.estimated.negligible_height();
-        highest.retain(|&(_, pass)| values[pass] > negligible);
-        let valleys = highest.into_iter();
-        valleys
-            .filter_map(|(parts, pass)| self.valley(parts, pass))
-            .collect()
+        highest.retain(|&(parts, pass)| parts.contains(&own) && values[pass] > self.negligible);
+        highest.iter().map(|&(_, pass)| self.valley(pass)).collect()
     }
 
     /// The valley through the saddle in or beside a cell.
-    fn valley(&self, parts: [usize; 2], cell: usize) -> Option<Valley> {
+    fn valley(&self, cell: usize) -> Option<Valley> {
         let values = self.field.values();
         let centre = self.field.centre(cell);
         let of = |values: &[f64]| -> Option<[f64; 2]> {
@@ -204,9 +205,8 @@ impl<'a> Trace<'a> {
                 ..*node
             }
         });
-        let nodes = thinned(nodes.collect());
+        let nodes = thinned(with_errors_beside(nodes.collect(), BESIDE));
         Some(Valley {
-            parts,
             origin,
             direction,
             nodes,
@@ -234,7 +234,7 @@ impl<'a> Trace<'a> {
         })
     }
 
-    /// The direction in which the density falls most on both sides of a saddle, in units of the standard deviations.
+    /// The direction in which the density falls most on both sides of a saddle, or on its only one, in units of the standard deviations.
     fn way_down(&self, origin: [f64; 2]) -> Option<[f64; 2]> {
         let far = LOOK * self.step(origin) / STEP;
         let heights = (0..DIRECTIONS).filter_map(|number| {
@@ -242,7 +242,9 @@ impl<'a> Trace<'a> {
             let direction = [angle.cos(), angle.sin()];
             let at = |s: f64| self.place(origin, direction.map(|one| s * one));
             let [one, other] = [far, -far].map(|s| self.jet((0, self.field.values()), at(s)));
-            Some((direction, one?.value.max(other?.value)))
+            // At a wall there is one side alone.
+            let heights = [one, other].into_iter().flatten().map(|jet| jet.value);
+            Some((direction, heights.max_by(f64::total_cmp)?))
         });
         heights.min_by(|a, b| a.1.total_cmp(&b.1)).map(|one| one.0)
     }
@@ -266,7 +268,7 @@ impl<'a> Trace<'a> {
     /// The unit vector downhill, in units of the standard deviations; `None` where the density is not known.
     fn downhill(&self, look: Look<'_>, at: [f64; 2]) -> Option<[f64; 2]> {
         let jet = self.jet(look, at)?;
-        if jet.value <= self.estimated.negligible_height() {
+        if jet.value <= self.negligible {
             return None;
         }
         let slope = [0, 1].map(|k| -jet.first[k] * self.units[k] / self.field.unit(k));
@@ -326,6 +328,20 @@ impl<'a> Trace<'a> {
         }
         way
     }
+}
+
+/// Nodes with the largest error of those up to so many beside them: what two readings differ by passes zero.
+pub(super) fn with_errors_beside(nodes: Vec<Node>, reach: usize) -> Vec<Node> {
+    let beside = |at: usize| at.saturating_sub(reach)..(at + reach + 1).min(nodes.len());
+    let largest = |at: usize| {
+        let errors = nodes[beside(at)].iter().map(|node| node.error);
+        errors.fold(0.0, f64::max)
+    };
+    let wider = nodes.iter().enumerate().map(|(at, node)| Node {
+        error: largest(at),
+        ..*node
+    });
+    wider.collect()
 }
 
 /// Fewer nodes, the first and the last among them, with the most by which what lies between is off added to each error.

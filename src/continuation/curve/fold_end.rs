@@ -142,7 +142,7 @@ pub(super) fn add_ends(
     branches
 }
 
-/// Doubts so many points at an end of which nobody knows where it is: what was followed there may be the centre itself.
+/// Doubts the last points at an end whose place is not known: what was followed there may be the centre itself.
 fn doubt_end(points: &mut [CurvePoint], (unsure, is_first): (usize, bool)) {
     let first = if is_first { 0 } else { points.len() - unsure };
     for point in &mut points[first..first + unsure] {

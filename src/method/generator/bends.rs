@@ -38,9 +38,14 @@ const GAUSS: [(f64, f64); 4] = [
     (0.960_289_856_497_536_3, 0.101_228_536_290_376_3),
 ];
 
+/// What all schemes err alike beside a jump of the force, with what they differ by, over the latter: they take the
+/// density from the same few cells there.
+const SHARED_AT_JUMPS: f64 = 2.0;
+
 impl GeneratorSession {
-    /// What the second scheme changes, with what schemes err alike beside planes at which a force turns; that has the
-    /// sign with which both together are larger.
+    /// What the second scheme changes, with what schemes err alike beside planes at which a force turns, bends or
+    /// jumps; that has the sign with which both together are larger. Where nobody can tell what they err alike beside
+    /// a jump, it is taken to be as large as what they differ by.
     pub(super) fn with_bends(
         &mut self,
         solved: &PointSolve,
@@ -60,8 +65,21 @@ impl GeneratorSession {
                 .map_err(|error| self.source.refused(error))?,
             false => None,
         };
+        let is_untold = broken.is_none() && lines.has_jumps();
+        let twice = |change: Vec<f64>| {
+            change
+                .into_iter()
+                .map(|one| SHARED_AT_JUMPS * one)
+                .collect()
+        };
+        if is_untold {
+            change = twice(change);
+        }
         if let Some(flow) = sum(turning, broken) {
             let more = match self.solver.response(&flow, unknowns, None, ROUGH) {
+                Err(RateError::Sensitivity) if !is_untold && lines.has_jumps() => {
+                    return Ok(twice(change));
+                }
                 Err(RateError::Sensitivity) => return Ok(change),
                 more => more?,
             };
