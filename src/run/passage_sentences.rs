@@ -60,7 +60,8 @@ pub(super) fn passage_in_words(family: &Family, passage: usize, fault: PassageFa
             "paths run away without entering the region that is waited for, so that it has no mean time"
         }
         PassageFault::NoPeak => {
-            "a region is the basin of a peak that the density does not have here, or is the only one, or of a ring that is not there, or its border is no single line that can be followed from cell to cell"
+            "a region is the basin of a peak that the density does not have here, or is the only one, or of a ring that \
+             is not there, or its border is no single line that can be followed from cell to cell"
         }
         PassageFault::Overlap => {
             return format!(

@@ -25,13 +25,13 @@ const PART: f64 = 0.4871;
 /// A second difference below this share of the largest difference between nodes beside it is rounding.
 const ROUNDING: f64 = 1e-9;
 
+/// Distance from a place, in intervals between nodes, at which values on either side are taken.
+const ASIDE: f64 = 1e-4;
+
 /// Values are taken at this share of that distance besides. Jump and bend of what is not smooth differ by less than the
 /// other share then; of what is smooth and steep they differ by more.
 const NEARER: f64 = 0.25;
 const SHARPER: f64 = 0.1;
-
-/// Distance from a place, in intervals between nodes, at which values on either side are taken.
-const ASIDE: f64 = 1e-4;
 
 /// Shares of the largest difference between nodes beside it from which on an observable jumps, or a change of its
 /// difference over a cell is a bend.

@@ -234,7 +234,8 @@ impl<'a> Trace<'a> {
         })
     }
 
-    /// The direction in which the density falls most on both sides of a saddle, or on its only one, in units of the standard deviations.
+    /// The direction in which the density falls most on both sides of a saddle, at a wall on its only one, in units of
+    /// the standard deviations.
     fn way_down(&self, origin: [f64; 2]) -> Option<[f64; 2]> {
         let far = LOOK * self.step(origin) / STEP;
         let heights = (0..DIRECTIONS).filter_map(|number| {
