@@ -17,6 +17,14 @@ use crate::density::EstimatedDensity;
 /// Rays on which a crest is looked for.
 const RAYS: usize = 60;
 
+/// Part of the direction of a line along an axis that is rounding.
+const ALONG_AXIS: f64 = 1e-9;
+
+/// Standard deviations from a saddle within which most states lie, and by how many a border may be off a straight line
+/// there.
+const MOST_STATES: f64 = 3.0;
+const STRAIGHT: f64 = 0.02;
+
 /// Jump of the crest from one ray to the next, in cells, beyond which it is not one curve.
 const LONGEST_JUMP: f64 = 4.0;
 
@@ -61,12 +69,48 @@ impl Border {
             ],
             None => [format!("atan2({y}, {x})"), format!("hypot({x}, {y})")],
         };
+        let across = match self.direction {
+            // Of a line along the second axis only the first coordinate tells, and the other way round.
+            Some([0.0, _]) => format!("-{x}"),
+            Some([_, 0.0]) => y,
+            _ => across,
+        };
         let nodes: Vec<(f64, f64)> = (self.nodes.iter())
             .map(|node| (node.along, node.across + self.side * moved * node.error))
             .collect();
         let function = broken_line(&along, &nodes);
         let sign = if self.side > 0.0 { '<' } else { '>' };
         format!("{across} {sign} {function}")
+    }
+
+    /// The same, as a straight line where it is one along an axis, as far as most states lie: an oscillator whose motion
+    /// passes the line has boundary layers there that are known for such lines alone.
+    fn straightened(mut self) -> Self {
+        let Some(axis) = self
+            .direction
+            .and_then(|one| one.iter().position(|part| part.abs() < ALONG_AXIS))
+        else {
+            return self;
+        };
+        let near = self
+            .nodes
+            .iter()
+            .filter(|node| node.along.abs() <= MOST_STATES);
+        let off = near
+            .map(|node| node.across.abs() + node.error)
+            .fold(0.0, f64::max);
+        if off > STRAIGHT {
+            return self;
+        }
+        let mut direction = [1.0; 2];
+        direction[axis] = 0.0;
+        self.direction = Some(direction);
+        self.nodes = vec![Node {
+            along: 0.0,
+            across: 0.0,
+            error: off,
+        }];
+        self
     }
 
     /// The same for what lies on the other side.
@@ -136,13 +180,14 @@ pub(crate) fn basin(
             ..
         } = valley;
         let (units, direction) = (trace.units, Some(direction));
-        let mut border = Border {
+        let border = Border {
             origin,
             units,
             direction,
             nodes,
             side: 1.0,
         };
+        let mut border = border.straightened();
         let at = peaks[own];
         if !border.holds(at) {
             border = border.other_side();
@@ -356,6 +401,22 @@ mod tests {
             assert!(basin(&density, &detection, 3).is_none());
             assert!(crest(&density, &detection).is_none());
         }
+    }
+
+    #[test]
+    fn a_valley_along_an_axis_ends_a_basin_at_one_coordinate() {
+        // x'' = -g x' + x - x³ + 0.15 + √(2 g T) ξ, T = 0.15: the valley is x = -0.153395, a root of x - x³ + 0.15.
+        let potential = |x: f64| -0.5 * x * x + 0.25 * x.powi(4) - 0.15 * x;
+        let log = |x: f64, y: f64| -(0.5 * y * y + potential(x)) / 0.15;
+        let (density, detection) = detected(log, 80);
+        let left = basin(&density, &detection, 1).unwrap();
+        let [border] = &left[..] else {
+            panic!("{} borders", left.len())
+        };
+        let text = border.inequality(["x", "y"], 0.0);
+        assert!(!text.contains('y'), "{text}");
+        assert!(border.holds([-0.15341, 2.0]) && !border.holds([-0.15338, -2.0]));
+        assert!(border.nodes.iter().all(|node| node.error < 1e-4));
     }
 
     #[test]
