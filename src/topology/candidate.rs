@@ -195,6 +195,11 @@ fn height(
     } else {
         height_above(&extremum, &saddle, estimated)
     };
+    // At an end polynomials reach beyond the last average, which proves no more than it stands out by itself.
+    let height = match extremum.is_at_end {
+        true => height.min(component.persistence),
+        false => height,
+    };
     // Else a cell that is the highest around it only because of how the cells lie.
     let is_level = |place: &Critical| place.is_level(height, estimated);
     let is_of_kind = extremum.is_of_kind(kind, height) && is_level(&extremum) && is_level(&saddle);
