@@ -45,7 +45,7 @@ const SAME: f64 = 1e-5;
 const BESIDE: usize = 2;
 
 /// A place on a line at which an observable is not smooth.
-struct Break {
+struct Discontinuity {
     /// Its cell coordinate.
     at: f64,
     /// Whether the observable jumps there: by how much it does, and its slope by the cell coordinate.
@@ -105,7 +105,11 @@ pub(super) fn summable(
 }
 
 /// The places of a line at which an observable is not smooth; its values are those at the nodes.
-fn breaks(axis: &Axis, values: &[f64], observable: &mut impl FnMut(f64) -> f64) -> Vec<Break> {
+fn breaks(
+    axis: &Axis,
+    values: &[f64],
+    observable: &mut impl FnMut(f64) -> f64,
+) -> Vec<Discontinuity> {
     let difference = |k: usize| values[k + 1] - values[k];
     let second = |k: usize| match k > 0 && k + 1 < values.len() {
         true => difference(k) - difference(k - 1),
@@ -123,7 +127,7 @@ fn breaks(axis: &Axis, values: &[f64], observable: &mut impl FnMut(f64) -> f64) 
         let [from, to] = [k, k + 1].map(|node| axis.nodes()[node]);
         break_between(axis, [from, to], size, observable)
     });
-    let mut all: Vec<Break> = found.collect();
+    let mut all: Vec<Discontinuity> = found.collect();
     // What is on a node is found from both sides.
     all.dedup_by(|next, one| next.at - one.at < SAME);
     all
@@ -135,7 +139,7 @@ fn break_between(
     [from, to]: [f64; 2],
     size: f64,
     observable: &mut impl FnMut(f64) -> f64,
-) -> Option<Break> {
+) -> Option<Discontinuity> {
     let (mut low, mut high) = (from, to);
     for _ in 0..DIVISIONS {
         let middle = low + PART * (high - low);
@@ -154,7 +158,7 @@ fn break_between(
         let [far_below, below, above, far_above] =
             [-2.0, -1.0, 1.0, 2.0].map(|steps| observable(place + steps * step));
         let upper = 2.0 * above - far_above;
-        Break {
+        Discontinuity {
             at: axis.coordinate(place),
             jumps: false,
             jump: upper - (2.0 * below - far_below),
@@ -172,9 +176,9 @@ fn break_between(
     let changed = (found.jump - nearer.jump).abs() + (found.bend - nearer.bend).abs();
     let is_sharp = changed <= SHARPER * (found.jump.abs() + found.bend.abs());
     Some(match is_sharp {
-        true => Break { jumps, ..found },
+        true => Discontinuity { jumps, ..found },
         // What is smooth and steep is left as it is, and its sums are as doubtful as those of a jump.
-        false => Break {
+        false => Discontinuity {
             jumps: true,
             jump: 0.0,
             bend: 0.0,
@@ -185,7 +189,7 @@ fn break_between(
 }
 
 /// By how much values at nodes change for a place, with their positions; nothing too near an end.
-fn changes(found: &Break, values: &[f64]) -> Vec<(usize, f64)> {
+fn changes(found: &Discontinuity, values: &[f64]) -> Vec<(usize, f64)> {
     // The node of a cell is half a cell above its lower edge.
     let first_above = (found.at - 0.5 - SAME).ceil().max(0.0) as usize;
     let Some(start) = first_above.checked_sub(BESIDE) else {

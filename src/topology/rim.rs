@@ -13,12 +13,12 @@ use crate::density::EstimatedDensity;
 
 /// Rays from the point inside.
 const RAYS: usize = 120;
-/// Points a cell at which the first ray is looked at.
-const POINTS_A_CELL: f64 = 2.0;
+/// Points a cell at which a ray is looked at for where it is highest.
+pub(super) const POINTS_A_CELL: f64 = 2.0;
 /// Most steps of Newton's method on a ray.
 const MOST_STEPS: usize = 8;
 /// Jump of the crest from one ray to the next, in cells, beyond which it is not one curve.
-const LONGEST_JUMP: f64 = 4.0;
+pub(super) const LONGEST_JUMP: f64 = 4.0;
 
 /// Cells on either side of the crest that belong to it.
 const BESIDE: usize = 2;
