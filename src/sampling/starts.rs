@@ -86,15 +86,8 @@ fn place(strata: &[f64], shift: f64, points: f64, first: usize, coordinates: &mu
 fn coprime_near(wanted: usize, points: usize) -> usize {
     let near = (0..=points).flat_map(|off| [wanted.saturating_sub(off), wanted + off]);
     near.filter(|&number| (1..=points).contains(&number))
-        .find(|&number| greatest_common_divisor(number, points) == 1)
+        .find(|&number| num_integer::gcd(number, points) == 1)
         .unwrap_or(1)
-}
-
-fn greatest_common_divisor(mut a: usize, mut b: usize) -> usize {
-    while b > 0 {
-        (a, b) = (b, a % b);
-    }
-    a
 }
 
 #[cfg(test)]

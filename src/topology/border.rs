@@ -28,8 +28,9 @@ const STRAIGHT: f64 = 0.02;
 /// Rays on either side of one whose errors are taken for its own.
 const BESIDE: usize = 2;
 
-/// Share of a cell within which the first coordinates of two peaks are the same.
-const SAME_COLUMN: f64 = 0.5;
+/// Standard deviations within which the first coordinates of two peaks are the same: which peak is the first must not
+/// hang on the cells.
+const SAME_COLUMN: f64 = 0.1;
 
 /// Share of the mass of a basin that may lie in cells which climb to another peak than the border says.
 const MISPLACED: f64 = 0.05;
@@ -162,7 +163,7 @@ pub(crate) fn basin(
 ) -> Option<Vec<DensityBorder>> {
     let field = field(density)?;
     let trace = Trace::new(&field, density)?;
-    let peaks = peaks(&field, detection);
+    let peaks = peaks(trace.units[0], detection);
     let own = peak.checked_sub(1).filter(|&own| own < peaks.len())?;
     let climbs = trace.climbs(&peaks);
     let mut borders = Vec::new();
@@ -210,17 +211,14 @@ fn field(density: &EstimatedDensity) -> Option<Field<'_>> {
     Field::new(density).filter(|_| Cover::of(density).is_none())
 }
 
-/// Places of the peaks that are there, in the order of their first coordinates; of those that differ by less than half
-/// a cell in them, in the order of the second ones.
-fn peaks(field: &Field<'_>, detection: &Detection) -> Vec<[f64; 2]> {
+/// Places of the peaks that are there, in the order of their first coordinates; of those that differ by less than a
+/// tenth of its standard deviation in them, in the order of the second ones.
+fn peaks(deviation: f64, detection: &Detection) -> Vec<[f64; 2]> {
     let mut all: Vec<[f64; 2]> = of_kind(detection, FeatureKind::Peak)
         .filter_map(|peak| peak.position.get(..2)?.try_into().ok())
         .collect();
     all.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let is_near = |one: &[f64; 2], other: &[f64; 2]| {
-        let width = field.cell_width(0, one[0]) * field.unit(0);
-        other[0] - one[0] < SAME_COLUMN * width
-    };
+    let is_near = |one: &[f64; 2], other: &[f64; 2]| other[0] - one[0] < SAME_COLUMN * deviation;
     for column in all.chunk_by_mut(is_near) {
         column.sort_by(|a, b| a[1].total_cmp(&b[1]));
     }

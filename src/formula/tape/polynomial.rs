@@ -115,7 +115,7 @@ impl Polynomial {
         let powers = || self.terms.iter().map(|term| term.power);
         let lowest = powers().min().unwrap_or(0);
         let step = powers()
-            .fold(0, |step, power| gcd(step, power - lowest))
+            .fold(0, |step, power| num_integer::gcd(step, power - lowest))
             .max(1);
         let highest = powers().max().unwrap_or(0);
         (lowest, step, ((highest - lowest) / step) as usize)
@@ -143,10 +143,6 @@ impl Polynomial {
         self.parts.extend(other.parts);
         Some(Self { base, ..self })
     }
-}
-
-fn gcd(a: u32, b: u32) -> u32 {
-    if b == 0 { a } else { gcd(b, a % b) }
 }
 
 struct Finder<'a> {

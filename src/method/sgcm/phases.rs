@@ -48,7 +48,7 @@ impl PhaseMap {
         }
         let part = parts.into_iter().reduce(f64::min)?;
         let wanted = (wanted / part).clamp(1.0, u32::MAX.into());
-        let goes_all_round = |passed: &usize| greatest_common_divisor(*passed, count) == 1;
+        let goes_all_round = |passed: &usize| num_integer::gcd(*passed, count) == 1;
         // Whole turns and one cell more go round: a map that does is never far.
         let above = (wanted * (1.0 - 1e-9)).ceil() as usize;
         let above = (above..).find(goes_all_round).unwrap_or(1);
@@ -73,14 +73,6 @@ impl PhaseMap {
     /// The longest time step that follows the forcing.
     pub(super) fn longest_step(&self) -> f64 {
         self.count as f64 * self.part / STEPS_OF_A_PERIOD
-    }
-}
-
-fn greatest_common_divisor(a: usize, b: usize) -> usize {
-    if b == 0 {
-        a
-    } else {
-        greatest_common_divisor(b, a % b)
     }
 }
 

@@ -127,6 +127,18 @@ fn four_basins_end_at_two_valleys_each() {
 }
 
 #[test]
+fn the_number_of_a_basin_does_not_hang_on_the_cells() {
+    // Peaks at (-0.02, 1) and (0.02, -1): less than a tenth of the standard deviation 0.5 of x apart, so that y tells.
+    let log = |x: f64, y: f64| -2.0 * (y * y - 1.0).powi(2) - 2.0 * (x + 0.02 * y) * (x + 0.02 * y);
+    for count in [30, 47, 80, 120] {
+        let (density, detection) = detected(log, count);
+        let borders = basin(&density, &detection, 1).unwrap();
+        let holds = |at: [f64; 2]| borders.iter().all(|one| one.holds(at));
+        assert!(holds([0.02, -1.0]) && !holds([-0.02, 1.0]), "{count}");
+    }
+}
+
+#[test]
 fn a_ring_ends_at_its_crest() {
     // r = 1 about (0.2, -0.1), in a frame that is oblique and not square, with peaks on the crest.
     let radius = |x: f64, y: f64| {
