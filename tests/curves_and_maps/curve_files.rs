@@ -52,6 +52,39 @@ fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
     room.refused(&fold("--second a --from 0.2 --to 1.6"), &["99.0.0"]);
 }
 
+/// Density of exp(kx) where x has a cubic drift: its fold is at h = kb²/2 ± 2(a/3)^(3/2), b the strength of the noise.
+const OF_A_FORMULA: &str = r#"
+system.equations = { x = "h + a x - x^3" }
+system.noise = { x = "0.5958" }
+system.parameters = { h = 0.0, a = 0.508 }
+sweep = { parameter = "h", from = -0.9, to = 0.9, points = 7 }
+detect = { marginals = ["q = exp(0.462 x)"], joint = [] }
+"#;
+
+#[test]
+fn a_fold_of_a_formula_is_within_its_errors_between_checks_too() {
+    let room = Room::new();
+    room.write("q.toml", OF_A_FORMULA);
+    room.done("sweep q.toml --out run --quiet");
+    room.done("curve run --row PB1 --second a --from 0.3 --to 1.3 --out curve --quiet");
+    let centre = 0.5 * 0.462 * 0.5958 * 0.5958;
+    let (mut located, mut points) = (0, 0);
+    for row in room.table("curve/curves.csv").0 {
+        let [h, a, error] = row.numbers(["h", "a", "error"]);
+        // Across the curve, in sides of the box: h is swept over 1.8, a over 1.
+        let half = 2.0 * (a / 3.0_f64).powf(1.5);
+        let off = (h - centre).abs() - half;
+        let (by_h, by_a) = (1.8, (a / 3.0).sqrt());
+        let across = off.abs() / f64::hypot(by_h, by_a);
+        points += 1;
+        if &row["status"] == "located" {
+            located += 1;
+            assert!(across <= error + 1e-9, "{a}: {across:e} beyond {error:e}");
+        }
+    }
+    assert!(2 * located > points, "{located} of {points}");
+}
+
 #[test]
 #[rustfmt::skip]
 fn a_sweep_file_names_the_curves_that_its_sweep_is_followed_by() {

@@ -103,11 +103,21 @@ impl Task<'_> {
     }
 
     /// The points that are checked: both ends, every so many from the start on, and those at which the indicator's
-    /// place has moved far since the last one. The slope at a kink follows from the equations: no grid takes part.
+    /// place has moved far since the last one; of a quantity all, because what its bins do depends on where in a bin
+    /// the place lies, and a step passes several. The slope at a kink follows from the equations: no grid takes part.
     fn selection(&self, walked: &Walked) -> Vec<usize> {
         let every = self.options.check_every;
         if every == 0 || self.start.kind.traits().is_exact {
             return Vec::new();
+        }
+        let subject = self.source.subject();
+        let observable = subject.observables.get(self.start.observable);
+        let axes = observable.map(|one| one.axes()).unwrap_or_default();
+        if axes
+            .iter()
+            .any(|&axis| subject.family.quantity(axis).is_some())
+        {
+            return (0..walked.points.len()).collect();
         }
         let last = walked.points.len() - 1;
         let mut chosen = vec![walked.start];
