@@ -178,17 +178,44 @@ fn between(
             change(Some(course), None)
         }));
     }
+    let mut lost = Vec::new();
     for event in events {
         let course = decisive(points, detector, observable, (left, right), &event);
         // What no indicator tells of has a row of its own: else the next one would have its change of the count too.
         if course.is_some() || event.indicator.is_none() {
             found.push(change(course, Some(event)));
+        } else {
+            lost.push(change(None, Some(event)));
         }
+    }
+    if found.iter().all(|one| one.event.is_some()) {
+        add_what_is_missing(&mut found, lost);
     }
     if found.is_empty() {
         found.push(change(None, None));
     }
     found
+}
+
+/// Adds those of the changes whose indicators were lost without which the others do not make what is counted above of
+/// what is counted below: a crater that opens beside a peak that is born is not the peak's.
+fn add_what_is_missing(found: &mut Vec<Change>, lost: Vec<Change>) {
+    let Some(Change { before, after, .. }) = found.first().cloned() else {
+        return;
+    };
+    let left_over = |steps: &[Change]| {
+        let counted = steps.iter().fold(before, |now, one| one.step(now));
+        let counts = |one: &Signature| [one.peaks, one.craters, one.rings];
+        let pairs = counts(&counted).into_iter().zip(counts(&after));
+        pairs.map(|(a, b)| a.abs_diff(b)).sum::<usize>()
+    };
+    for one in lost {
+        let own = left_over(found);
+        found.push(one);
+        if left_over(found) >= own {
+            found.pop();
+        }
+    }
 }
 
 /// What follows an event. A critical point that stays, on a line of symmetry, goes before a fold, but where a force

@@ -13,6 +13,9 @@ pub struct KnownDensity<'a> {
     pub unknowns: &'a [f64],
     /// By how much those of a second discretisation differ, Σ = 0; `None` where the density has all its digits.
     pub changes: Option<&'a [f64]>,
+    /// By how much modes that are not there may change them; `None` where no axis is carried by modes, or they are told
+    /// otherwise.
+    pub by_modes: Option<&'a [f64]>,
     /// By how much they would differ if what leaves the range stayed in the cells that it leaves from; `None` where
     /// next to nothing leaves.
     pub returning: Option<&'a [f64]>,

@@ -82,6 +82,7 @@ impl LaidOut {
         KnownDensity {
             unknowns: &self.unknowns,
             changes: self.changes.as_deref(),
+            by_modes: None,
             returning: self.returning.as_deref(),
             beyond: self.beyond,
             planes,

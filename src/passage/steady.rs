@@ -67,10 +67,26 @@ pub(super) fn mass_in(
     density: &KnownDensity<'_>,
     region: &BoundQuantity,
 ) -> Result<WithError, PassageError> {
-    mass_beside(space, density, region, &[]).map(|(mass, _)| mass)
+    let ((mass, error), _) = mass_beside(space, density, region, &[])?;
+    Ok((mass, error + change_by_modes(space, density, region)?))
 }
 
-/// The same, with the masses of some other unknowns in that region.
+/// By how much modes that are not there may change the mass in the region: what no mode but the first carries is
+/// changed too, by what the others feed into it.
+pub(super) fn change_by_modes(
+    space: &CellSpace,
+    density: &KnownDensity<'_>,
+    region: &BoundQuantity,
+) -> Result<f64, PassageError> {
+    let Some(changes) = density.by_modes else {
+        return Ok(0.0);
+    };
+    let level = |state: &[f64]| region.at(state);
+    let levels = levels(space, region)?;
+    Ok(masses_in(space, &[changes], (level, &levels), NODES)[0].abs())
+}
+
+/// The same but for what modes that are not there change, with the masses of some other unknowns in that region.
 pub(super) fn mass_beside(
     space: &CellSpace,
     density: &KnownDensity<'_>,
@@ -138,6 +154,7 @@ mod tests {
             let density = KnownDensity {
                 unknowns: &unknowns,
                 changes: None,
+                by_modes: None,
                 returning: None,
                 beyond: 0.0,
                 planes: &[],

@@ -13,7 +13,7 @@ use super::dips::{dip, may_dip};
 use super::laid_out::{LaidOut, space_of};
 use super::spread::GAUSS;
 use super::start::add_state;
-use super::steady::{local_volumes, mass_beside};
+use super::steady::{change_by_modes, local_volumes, mass_beside};
 use super::timed::WithError;
 use super::{KnownDensity, PassageError, dot};
 use crate::MAX_DIMENSION;
@@ -56,6 +56,7 @@ pub fn visits(
 ) -> Result<Visits, PassageError> {
     let angles: Vec<bool> = space.axes().iter().map(Axis::is_closed).collect();
     let laid = LaidOut::new((system, space), region, density)?;
+    let by_modes = change_by_modes(space, &density, region)?;
     let (cells, density) = match &laid {
         Some(laid) => (&laid.space, laid.density(density.planes)),
         None => (space, density),
@@ -65,7 +66,7 @@ pub fn visits(
         changes.fold(0.0, |most: f64, change| most.max(change.abs()))
     };
     let (mut time_share, changes) = mass_beside(cells, &density, region, &added)?;
-    time_share.1 += largest(&mut changes.into_iter());
+    time_share.1 += largest(&mut changes.into_iter()) + by_modes;
     let axes = cells.axes().iter();
     let cut = axes.filter(|axis| !axis.is_modes()).count();
     let intervals = if cut > 2 {

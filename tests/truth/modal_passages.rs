@@ -4,6 +4,7 @@
 use std::f64::consts::{PI, TAU};
 
 use pbif::continuation::{Finding, Solution};
+use statrs::function::erf::erfc;
 
 use crate::common::sweeps::{measure, solved};
 
@@ -188,6 +189,36 @@ fn means_under_coloured_noise_have_a_part_for_its_modes() {
             &["mean_x", "sd_x", "mean_ax", "sd_ax"],
             1.0,
         );
+    }
+}
+
+#[test]
+fn shares_of_the_time_have_a_part_for_modes_that_feed_into_the_first() {
+    // A linear system under coloured noise: x is normal with the variance s²/(2 k (1 + k tau)). The mass of a region of
+    // x alone is carried by the first mode, which leaving out the last ones takes nothing from.
+    let text = r#"
+system.equations = { x = "-0.107 - k x" }
+system.noise = { kind = "ornstein-uhlenbeck", x = "0.52" }
+system.parameters = { tau = 0.303 }
+sweep = { parameter = "k", from = 0.589, to = 0.989, points = 2 }
+cells = { x = { from = -2.83, to = 2.466, count = 90 } }
+detect = { marginals = ["x"], joint = [] }
+visits = { high = "x > 0.363" }
+"#;
+    for k in [0.589, 0.989] {
+        let deviation = 0.52 / (2.0 * k * (1.0 + k * 0.303)).sqrt();
+        let exact = 0.5 * erfc((0.363 + 0.107 / k) / deviation / 2.0_f64.sqrt());
+        for modes in [5, 6, 7, 8, 10] {
+            let words = format!("cells.noise={{modes={modes}}}");
+            let (_, found) = solved(text, &words, Some(k));
+            let (share, error) = measure(&found, "high_time_share");
+            let off = (share - exact).abs();
+            assert!(
+                off <= error,
+                "{modes} at {k}: {share} ± {error:e}, exactly {exact}"
+            );
+            assert!(modes < 10 || error < 1e-3 * exact, "{k}: {error:e}");
+        }
     }
 }
 

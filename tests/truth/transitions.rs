@@ -47,6 +47,7 @@ pub(crate) fn found(model: &Arc<Model>, parts: [&str; 2], axes: &[(f64, f64, usi
     let density = KnownDensity {
         unknowns: &unknowns,
         changes: Some(&changes),
+        by_modes: None,
         returning: None,
         beyond: 0.0,
         planes: &[],

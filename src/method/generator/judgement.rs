@@ -38,6 +38,8 @@ type Judged = (Solution<'static>, Option<(Trail, KnownErrors)>);
 pub(super) struct KnownErrors {
     /// Changes by the second scheme, and what all schemes err alike.
     pub(super) changes: Vec<f64>,
+    /// Changes by modes that are not there, where they are known.
+    pub(super) by_modes: Option<Vec<f64>>,
     pub(super) cut_off: CutOff,
 }
 
@@ -148,7 +150,7 @@ impl GeneratorSession {
             },
         )?;
         let of_states = [of_axes, of_quantities].concat();
-        let of_states = self.with_last_modes(solved, of_states, without_last_modes)?;
+        let (of_states, by_modes) = self.with_last_modes(solved, of_states, without_last_modes)?;
         let moments = [of_states, at_phases].concat();
         reporter.moments(&moments);
         let shifts = reporter.shifts(&moments);
@@ -173,6 +175,7 @@ impl GeneratorSession {
         let trail = trail_after(solved, second.by_scheme, relaxation, before);
         let known = KnownErrors {
             changes: second.change,
+            by_modes,
             cut_off,
         };
         Ok((solution, Some((trail, known))))

@@ -19,7 +19,7 @@ use crate::method::{MethodError, Problem};
 use crate::space::{Axis, CellSpace, Series};
 use crate::stationary::generator::RateSolver;
 
-/// Times what the last modes change of a mean: those that are not there may do as much.
+/// Times what the last modes change of a number: those that are not there may do as much.
 const SAFETY: f64 = 2.0;
 
 impl GeneratorSession {
@@ -47,19 +47,20 @@ impl GeneratorSession {
 
     /// Adds to moments of axes and, behind them, of the quantities that are averaged what the last modes of coloured
     /// noise change in them (`without` are the unknowns without these), and the last harmonics of angles; in a check
-    /// nothing.
+    /// nothing. With the moments goes by how much the unknowns may be off for that, where it is known.
     pub(super) fn with_last_modes(
         &mut self,
         solved: &PointSolve,
         moments: Vec<EstimatedMoments>,
         without: Option<Vec<f64>>,
-    ) -> Result<Vec<EstimatedMoments>, MethodError> {
+    ) -> Result<(Vec<EstimatedMoments>, Option<Vec<f64>>), MethodError> {
         let problem = self.source.problem.clone();
         let space = problem.space();
         let asked = angles(&problem);
         let harmonics = self.by_fewer_modes(solved, &asked)?;
         let system = solved.system.as_ref();
         let mut moments = moments;
+        let mut by_modes: Option<Vec<f64>> = None;
         for there in without.into_iter().chain(harmonics) {
             let masses = cell_masses(system, space, &there);
             let of_quantities = self.source.maps(solved.value)?.plain_moments(&masses)?;
@@ -68,8 +69,13 @@ impl GeneratorSession {
             for (own, other) in moments.iter_mut().zip(others) {
                 *own = with_change(*own, other);
             }
+            let unknowns = &solved.steady.mass;
+            let changes = by_modes.get_or_insert_with(|| vec![0.0; unknowns.len()]);
+            for (change, (there, own)) in changes.iter_mut().zip(there.iter().zip(unknowns)) {
+                *change += SAFETY * (there - own);
+            }
         }
-        Ok(moments)
+        Ok((moments, by_modes))
     }
 
     /// The unknowns as they would be without the last modes of the axes that are asked, by a flag an axis; `None` where

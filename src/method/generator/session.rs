@@ -104,6 +104,7 @@ impl GeneratorSession {
             let known = Some(KnownDensity {
                 unknowns: &unknowns,
                 changes: Some(&changes),
+                by_modes: None,
                 returning: None,
                 beyond: beyond.fold(0.0, f64::max),
                 planes: &planes(&self.source.kinked),
@@ -134,6 +135,7 @@ impl GeneratorSession {
         let known = pairs.map(|((_, errors), (unknowns, changed))| KnownDensity {
             unknowns,
             changes: Some(&errors.changes),
+            by_modes: errors.by_modes.as_deref(),
             returning: errors.cut_off.returning.as_deref(),
             // What walls change of all values alike is made good to fourth order, and taken for its own error.
             beyond: errors.cut_off.beyond + changed,
