@@ -5,7 +5,7 @@
 //! Several features may change between the same two points; each is a change of its own.
 
 use super::Point;
-use super::events::{Event, events};
+use super::events::{self, Event, events};
 use super::follow::{Course, Crossing, follow};
 use super::grid::Counts;
 use super::root::root;
@@ -106,13 +106,13 @@ pub(super) fn changes(points: &[&Point], detector: &dyn Detector) -> Vec<Change>
             }
         }
     }
-    one_change_a_zero(&mut found);
+    one_change_a_zero(&mut found, points);
     found
 }
 
 /// Leaves a zero to one change alone, the first of those that are nearest to it: there one pair comes or goes. What an
 /// inflection that was lost was followed to in place of it is the zero of another.
-fn one_change_a_zero(changes: &mut [Change]) {
+fn one_change_a_zero(changes: &mut [Change], points: &[&Point]) {
     let claim = |change: &Change| {
         let crossing = change.crossing()?;
         let event = change.event.as_ref()?;
@@ -128,10 +128,21 @@ fn one_change_a_zero(changes: &mut [Change]) {
         .map(|one| (claim(one), distance(one)))
         .collect();
     for (number, (change, (own, away))) in changes.iter_mut().zip(&claims).enumerate() {
-        let is_taken = |(place, (other, nearer)): (usize, &(_, usize))| {
-            other == own && (*nearer, place) < (*away, number)
+        let Some((zero, place, above)) = own else {
+            continue;
         };
-        if own.is_some() && claims.iter().enumerate().any(is_taken) {
+        let axes = &points[zero.1].densities[change.observable].density.axes;
+        // What leads to one zero from two sides meets it but for rounding.
+        let is_same = |claim: &Option<(_, Vec<f64>, bool)>| {
+            claim.as_ref().is_some_and(|other| {
+                (&other.0, &other.2) == (zero, above)
+                    && events::distance(&other.1, place, axes) < ONE_ZERO
+            })
+        };
+        let is_taken = |(place, (other, nearer)): (usize, &(_, usize))| {
+            is_same(other) && (*nearer, place) < (*away, number)
+        };
+        if claims.iter().enumerate().any(is_taken) {
             change.course = None;
         }
     }
@@ -178,44 +189,17 @@ fn between(
             change(Some(course), None)
         }));
     }
-    let mut lost = Vec::new();
     for event in events {
         let course = decisive(points, detector, observable, (left, right), &event);
         // What no indicator tells of has a row of its own: else the next one would have its change of the count too.
         if course.is_some() || event.indicator.is_none() {
             found.push(change(course, Some(event)));
-        } else {
-            lost.push(change(None, Some(event)));
         }
-    }
-    if found.iter().all(|one| one.event.is_some()) {
-        add_what_is_missing(&mut found, lost);
     }
     if found.is_empty() {
         found.push(change(None, None));
     }
     found
-}
-
-/// Adds those of the changes whose indicators were lost without which the others do not make what is counted above of
-/// what is counted below: a crater that opens beside a peak that is born is not the peak's.
-fn add_what_is_missing(found: &mut Vec<Change>, lost: Vec<Change>) {
-    let Some(Change { before, after, .. }) = found.first().cloned() else {
-        return;
-    };
-    let left_over = |steps: &[Change]| {
-        let counted = steps.iter().fold(before, |now, one| one.step(now));
-        let counts = |one: &Signature| [one.peaks, one.craters, one.rings];
-        let pairs = counts(&counted).into_iter().zip(counts(&after));
-        pairs.map(|(a, b)| a.abs_diff(b)).sum::<usize>()
-    };
-    for one in lost {
-        let own = left_over(found);
-        found.push(one);
-        if left_over(found) >= own {
-            found.pop();
-        }
-    }
 }
 
 /// What follows an event. A critical point that stays, on a line of symmetry, goes before a fold, but where a force
@@ -319,6 +303,9 @@ fn separates(points: &[&Point], crossing: &Crossing, above: bool) -> bool {
     let next = late.and_then(signature);
     signature(left) != signature(right) || (is_near && next.is_some() && next != signature(left))
 }
+
+/// Distance in units of the ranges within which places of an indicator are one.
+const ONE_ZERO: f64 = 1e-4;
 
 /// Share of its value at the other end of a bracket from which on an indicator is next to zero.
 const NEAR_ZERO: f64 = 1e-2;

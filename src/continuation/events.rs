@@ -281,7 +281,7 @@ fn present(point: &Point, observable: usize, kind: FeatureKind) -> Vec<&Feature>
 }
 
 /// Distance of two places in units of the ranges.
-fn distance(a: &[f64], b: &[f64], axes: &[Axis]) -> f64 {
+pub(super) fn distance(a: &[f64], b: &[f64], axes: &[Axis]) -> f64 {
     let terms = a.iter().zip(b).zip(axes);
     terms
         .map(|((&a, &b), axis)| (axis.apart(a, b) / (axis.to() - axis.from())).powi(2))

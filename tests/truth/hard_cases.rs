@@ -56,6 +56,8 @@ const CASES: &[Case] = &[
     case("coulomb_ranges", "", "`coulomb` without friction, both ranges `auto`", &[("x", 0.0), ("xy", 0.0)], Located),
     case("narrow_range", "", "the same, a range that is too narrow", &[("x", 0.0), ("xy", 0.0)],
         Partly(0, "a wider range of y")),
+    case("three_wells", "", "a peak is born and a crater opens inside one step, next to each other",
+        &[("xy", 0.054_679), ("xy", 0.119_539), ("xy", 0.229_788)], Located),
     case("two_folds", "", "three peaks become one by two folds inside one step",
         &[("x", -0.507_233_543_5), ("x", -0.497_240_265_5), ("x", 0.497_240_265_5), ("x", 0.507_233_543_5)], Located),
     case("corner_beside_fold", "", "a pair born 4e-5 before its valley passes a corner of the noise",
@@ -210,6 +212,11 @@ fn a_band_holds_what_is_read_beside_a_fixed_point() {
 #[test]
 fn cells_are_refined_until_values_are_as_certain_as_wanted() {
     assert_right(of(&["coupled", "dimentberg"]));
+}
+
+#[test]
+fn two_births_inside_one_step_have_a_row_each() {
+    assert_right(of(&["three_wells"]));
 }
 
 #[test]

@@ -205,7 +205,7 @@ cells = { x = { from = -2.83, to = 2.466, count = 90 } }
 detect = { marginals = ["x"], joint = [] }
 visits = { high = "x > 0.363" }
 "#;
-    for k in [0.589, 0.989] {
+    for k in [0.589_f64, 0.989] {
         let deviation = 0.52 / (2.0 * k * (1.0 + k * 0.303)).sqrt();
         let exact = 0.5 * erfc((0.363 + 0.107 / k) / deviation / 2.0_f64.sqrt());
         for modes in [5, 6, 7, 8, 10] {
