@@ -3,6 +3,7 @@
 use super::label::{self, Label, Located};
 use super::{BifurcationStatus, Doubt, Point, SweepResult};
 use crate::density::Observable;
+use crate::numerics::sort_ascending;
 use crate::topology::Signature;
 
 /// What is counted in an observable at a value.
@@ -72,7 +73,7 @@ impl CloserLook {
         if is_more {
             *rows = others;
             rows.extend_from_slice(&self.rows);
-            rows.sort_by(|a, b| a.value.total_cmp(&b.value));
+            sort_ascending(rows, |one| one.value);
         }
         is_more
     }
