@@ -1,5 +1,10 @@
 //! Numerical routines that several rooms share.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use rayon::prelude::*;
+
 /// a·b, in a fixed order of eight sums, which run at once: the same everywhere.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 8];
@@ -31,6 +36,33 @@ pub(crate) fn ends_of(numbers: impl Iterator<Item = f64>) -> (f64, f64) {
     numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), number| {
         (low.min(number), high.max(number))
     })
+}
+
+/// What `make` gives of each number below `count`, in their order, made on all threads: coarse tasks, one a number. The
+/// error of the first that has one; then those that are not begun are left out.
+pub(crate) fn in_parallel<T: Send, E: Send>(
+    count: usize,
+    make: impl Fn(usize) -> Result<T, E> + Sync,
+) -> Result<Vec<T>, E> {
+    let slots: Vec<Mutex<Option<Result<T, E>>>> = (0..count).map(|_| Mutex::default()).collect();
+    let has_failed = AtomicBool::new(false);
+    for_each_number(count, &|number| {
+        if has_failed.load(Ordering::Relaxed) {
+            return;
+        }
+        let made = make(number);
+        has_failed.fetch_or(made.is_err(), Ordering::Relaxed);
+        *slots[number].lock().unwrap_or_else(PoisonError::into_inner) = Some(made);
+    });
+    let made = slots.into_iter().map(Mutex::into_inner);
+    made.filter_map(|made| made.unwrap_or_else(PoisonError::into_inner))
+        .collect()
+}
+
+/// What divides work among threads is compiled once for all coarse tasks.
+#[inline(never)]
+fn for_each_number(count: usize, task: &(dyn Fn(usize) + Sync)) {
+    (0..count).into_par_iter().with_max_len(1).for_each(task);
 }
 
 /// A bracket narrowed by halving, so often or until its ends are neighbouring numbers: where `is_first` holds in its
@@ -121,6 +153,21 @@ mod tests {
         // A bracket may be given from above, and few halvings leave it wide.
         assert_eq!(narrowed((4.0, 0.0), 2, |x| x > 2.5), (3.0, 2.0));
         assert_eq!(bisected((4.0, 0.0), 2, |x| x > 2.5), 2.5);
+    }
+
+    #[test]
+    fn tasks_side_by_side_give_their_results_in_order_or_an_error() {
+        let squares = in_parallel(50, |number| Ok::<_, usize>(number * number)).unwrap();
+        assert!(
+            squares
+                .iter()
+                .enumerate()
+                .all(|(number, square)| number * number == *square)
+        );
+        assert_eq!(squares.len(), 50);
+        let failed = in_parallel(50, |number| if number == 17 { Err(number) } else { Ok(()) });
+        assert_eq!(failed, Err(17));
+        assert_eq!(in_parallel(0, |_| Ok::<_, ()>(())), Ok(Vec::new()));
     }
 
     #[test]

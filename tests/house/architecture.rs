@@ -14,7 +14,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("system", &["numerics", "formula"]),
     ("exponent", &["system"]),
     ("space", &["numerics"]),
-    ("sampling", &["cancellation", "system", "space"]),
+    ("sampling", &["numerics", "cancellation", "system", "space"]),
     ("monte_carlo", &["numerics", "cancellation", "system", "space", "sampling"]),
     ("density", &["numerics", "bytes", "system", "space"]),
     ("generator", &["numerics", "system", "space", "density"]),
