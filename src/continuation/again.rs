@@ -8,6 +8,7 @@ use super::grid::{Checked, CheckedIndicator, Checks, FinerZero, Seen, check, kno
 use super::look::{CloserLook, with_looks};
 use super::span::Span;
 use super::{Goal, LocateOptions, Point, Subject, SweepResult, locate::label_points};
+use crate::numerics::sort_ascending;
 use crate::topology::Detector;
 
 /// Detects and locates again on all points there are, those that once refined brackets included, of a sweep with
@@ -25,7 +26,7 @@ pub(crate) fn detect_again(
     (checks, looks): (Option<Vec<CheckedIndicator>>, Vec<CloserLook>),
     options: &LocateOptions,
 ) -> SweepResult {
-    points.sort_by(|a, b| a.value.total_cmp(&b.value));
+    sort_ascending(&mut points, |one| one.value);
     points
         .par_iter_mut()
         .for_each(|point| point.detect(detector));

@@ -6,6 +6,7 @@ use super::follow::Course;
 use super::label::Located;
 use super::{Point, persistence};
 use crate::density::Observable;
+use crate::numerics::ends_of;
 use crate::topology::Detector;
 
 /// A row that no indicator tells the value of.
@@ -66,9 +67,7 @@ fn by_bracket(
     let ends = [0, points.len() - 1].map(|place| points[place].value);
     let reach = reach.map(|value| value.clamp(ends[0], ends[1]));
     let values = places.map(|place| points[place].value).chain(reach);
-    let (lower, upper) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-        (low.min(value), high.max(value))
-    });
+    let (lower, upper) = ends_of(values);
     Located {
         error: 0.5 * (upper - lower),
         ..band(

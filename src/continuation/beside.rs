@@ -13,6 +13,7 @@ use super::root::root;
 use super::span::Span;
 use super::{DensitySource, Goal, Point, Want};
 use crate::cancellation::Cancellation;
+use crate::numerics::sort_ascending;
 use crate::topology::Detector;
 
 /// Share of the swept range from which on zeros are far from each other: factors of one are of little use for another.
@@ -90,7 +91,7 @@ impl Beside<'_> {
     ) -> Vec<Vec<(&'c Change, &'c Crossing)>> {
         let zero =
             |crossing: &Crossing| root(self.points, crossing, self.detector.confidence()).value;
-        crossings.sort_by(|a, b| zero(a.1).total_cmp(&zero(b.1)));
+        sort_ascending(&mut crossings, |one| zero(one.1));
         let far = FAR * self.span.length();
         let are_near =
             |a: &(&Change, &Crossing), b: &(&Change, &Crossing)| zero(b.1) - zero(a.1) <= far;

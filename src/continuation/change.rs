@@ -9,6 +9,7 @@ use super::events::{self, Event, events};
 use super::follow::{Course, Crossing, follow};
 use super::grid::Counts;
 use super::root::root;
+use crate::numerics::sort_ascending;
 use crate::topology::{Detector, FeatureKind, Indicator, IndicatorKind, Signature};
 
 /// A change of one observable's signature between two neighbouring points.
@@ -320,7 +321,7 @@ fn take_those_of_centre(events: &mut Vec<Event>, before: &Signature, after: &Sig
         events.clear();
         return;
     }
-    events.sort_by(|a, b| a.from_centre.total_cmp(&b.from_centre));
+    sort_ascending(events, |one| one.from_centre);
     let explained = events.len().min(2);
     events.drain(..explained);
 }

@@ -9,6 +9,7 @@ use super::locate::has_wide_cells;
 use super::walk::Walk;
 use super::{Doubt, Finding, Point};
 use crate::density::Observable;
+use crate::numerics::sort_ascending;
 
 /// An observable by its place among those that are watched.
 pub(super) type Watched = (usize, Observable);
@@ -63,7 +64,7 @@ impl<'p> InDoubt<'p> {
         let unsure = unsure.filter(|one| !self.lacks_modes([one.1; 2]));
         let in_doubt = (in_doubt.map(Located::hull)).chain(unsure.map(|one| [one.1; 2]));
         let mut in_doubt: Vec<[f64; 2]> = in_doubt.collect();
-        in_doubt.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        sort_ascending(&mut in_doubt, |one| one[0]);
         let mut found: Vec<[f64; 2]> = Vec::new();
         for [lower, upper] in in_doubt {
             let margin = (0.25 * (upper - lower)).max(0.5 * self.step);

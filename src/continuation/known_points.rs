@@ -13,6 +13,7 @@ use super::Point;
 use super::distances::distance_between;
 use super::solved_point::SolvedPoint;
 use crate::cancellation::Cancellation;
+use crate::numerics::sort_ascending;
 use crate::topology::Detector;
 
 /// Points that are known, each given to the sweep once, and distances between neighbours among them.
@@ -36,7 +37,7 @@ impl KnownPoints {
         if points.is_empty() {
             return Self::default();
         }
-        points.sort_by(|a, b| a.value.total_cmp(&b.value));
+        sort_ascending(&mut points, |one| one.value);
         let distances = distances(&points, given, cancellation);
         let points = points.into_par_iter();
         let points = points.filter(|_| !cancellation.is_cancelled());

@@ -5,6 +5,7 @@ use super::doubt::{BifurcationStatus, Doubt, status_of};
 use super::spectral_change::SpectralChange;
 use super::{ErrorParts, Point};
 use crate::density::Observable;
+use crate::numerics::sort_ascending;
 use crate::system::Family;
 use crate::topology::{IndicatorKind, Signature, Step};
 
@@ -324,7 +325,7 @@ pub(super) fn failures(points: &[Point]) -> impl Iterator<Item = Label> {
 
 /// Sorts rows by parameter and numbers each type from 1.
 pub(super) fn number(mut labels: Vec<Label>) -> Vec<Label> {
-    labels.sort_by(|a, b| a.value().total_cmp(&b.value()));
+    sort_ascending(&mut labels, |one| one.value());
     let mut counts = [0; 6];
     for row in &mut labels {
         let (label, prefix, count) = match row {

@@ -3,6 +3,7 @@
 use super::label::{self, Label, Located};
 use super::{BifurcationStatus, Doubt, Point, SweepResult};
 use crate::density::Observable;
+use crate::numerics::sort_ascending;
 use crate::topology::Signature;
 
 /// What is counted in an observable at a value.
@@ -72,7 +73,7 @@ impl CloserLook {
         if is_more {
             *rows = others;
             rows.extend_from_slice(&self.rows);
-            rows.sort_by(|a, b| a.value.total_cmp(&b.value));
+            sort_ascending(rows, |one| one.value);
         }
         is_more
     }
@@ -151,7 +152,7 @@ impl Told {
 impl SweepResult {
     /// The densities that the sweep counts differently at some of its values although finer cells have shown that
     /// nothing changes between them: its cells are too wide to count by.
-    pub fn miscounted(&self) -> Vec<Observable> {
+    pub(crate) fn miscounted(&self) -> Vec<Observable> {
         let is_miscounted = |&(place, observable): &(usize, &Observable)| {
             let is_looked_at = self.looks.iter().any(|look| look.observable == *observable);
             let has_rows = self.bifurcations().any(|row| row.observable == *observable);

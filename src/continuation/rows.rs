@@ -6,6 +6,7 @@ use super::doubt::Doubt;
 use super::label::Located;
 use super::{BifurcationStatus, Point};
 use crate::density::Observable;
+use crate::numerics::sort_ascending;
 use crate::topology::IndicatorKind;
 
 /// So many rows in a row that are not located are one.
@@ -14,7 +15,7 @@ const FLICKER: usize = 3;
 /// The rows of changes between the same two points, ascending, each from the signature that the one before leaves;
 /// those whose values cannot be told apart are one.
 pub(super) fn in_order(mut found: Vec<(Located, &Change)>) -> Vec<Located> {
-    found.sort_by(|a, b| a.0.value.total_cmp(&b.0.value));
+    sort_ascending(&mut found, |one| one.0.value);
     let Some(last) = found.last().map(|one| one.1.after) else {
         return Vec::new();
     };
@@ -123,7 +124,7 @@ pub(super) fn doubt_what_does_not_continue(
         let mut own: Vec<usize> = (0..rows.len())
             .filter(|&row| rows[row].observable == *observable)
             .collect();
-        own.sort_by(|&a, &b| rows[a].value.total_cmp(&rows[b].value));
+        sort_ascending(&mut own, |&place| rows[place].value);
         let mut last = points.first().and_then(signature);
         let mut contradicting = Vec::new();
         for (number, &row) in own.iter().enumerate() {

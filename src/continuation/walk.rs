@@ -16,6 +16,7 @@ use super::span::Span;
 use super::wanted::Search;
 use super::{CellCheck, DensitySource, Goal, Label, Point, SweepError};
 use crate::cancellation::Cancellation;
+use crate::numerics::sort_ascending;
 use crate::topology::Detector;
 
 /// Solves beyond the given values at most, for any sweep, and for each of its values.
@@ -86,7 +87,7 @@ impl<'a> Walk<'a> {
         let walked: Result<Vec<Vec<SolvedPoint>>, SweepError> =
             segments.map(Segment::walk).collect();
         let mut solved: Vec<SolvedPoint> = walked?.into_iter().flatten().collect();
-        solved.sort_by(|a, b| a.point.value.total_cmp(&b.point.value));
+        sort_ascending(&mut solved, |one| one.point.value);
         for one in solved {
             self.note_unsure(&one);
             self.points.push(one.point);

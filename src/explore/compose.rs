@@ -1,59 +1,22 @@
 //! The page of stored densities, put together: what it is told, and its densities packed to fit.
 
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use super::ExploreError;
-use super::frame::{Frame, band};
+use super::frame::{band, frame};
 use super::html;
 use super::pack::{Packed, Scale, deflate};
 use super::plane::PlaneScene;
-use super::scene::Scene;
+use super::scene::scene;
 use crate::continuation::{Label, Point, Subject};
-use crate::density::Observable;
+use crate::density::{EstimatedDensity, Observable};
+use crate::space::Axis;
 use crate::sweep_file::Sweep;
 
 /// Bits of a marginal: what is packed differs from what is stored by less than a line is wide on any screen.
 const MARGINAL_BITS: u32 = 24;
 /// Bits of a band.
 const BAND_BITS: u32 = 12;
-
-/// What the page is told, beside its arrays.
-#[derive(Debug, Serialize)]
-struct PageData<'a> {
-    live: bool,
-    #[serde(flatten)]
-    scene: &'a Scene,
-    /// The plane of a map.
-    plane: Option<&'a PlaneScene>,
-    /// Of a map, the value of its second parameter for every frame.
-    across: &'a [f64],
-    frames: Vec<Frame>,
-    /// Of every watched density, in their order.
-    arrays: Vec<Arrays>,
-}
-
-/// Where the values of one watched density stand.
-#[derive(Debug, Serialize)]
-struct Arrays {
-    /// Numbers of the frames that have a density, ascending.
-    frames: Vec<usize>,
-    /// Edges of the cells along each axis.
-    edges: Vec<Vec<f64>>,
-    values: Option<Packing>,
-    band: Option<Packing>,
-    /// What the band is.
-    band_is: Option<&'static str>,
-}
-
-/// How values are packed that stand in a block of the page.
-#[derive(Debug, Serialize)]
-struct Packing {
-    block: usize,
-    top: f64,
-    levels: u32,
-    scale: Scale,
-    cells: usize,
-}
 
 /// What a page shows.
 pub(super) struct Shown<'a> {
@@ -84,12 +47,11 @@ impl Shown<'_> {
             fields.any(|field| field.name == *name)
         };
         let fields: Vec<&str> = fields.into_iter().filter(is_known).collect();
-        let scene = Scene::new(sweep, self.labels).with_fields(fields.iter().copied());
         let with_density = |(_, point): &(usize, &Point)| !point.densities.is_empty();
         let points = self.points.iter().copied().enumerate().filter(with_density);
-        let (numbers, points): (Vec<usize>, Vec<&Point>) = points.unzip();
         let mut blocks = Vec::new();
         let mut arrays = Vec::new();
+        let points: Vec<(usize, &Point)> = points.collect();
         for (number, observable) in subject.observables.iter().enumerate() {
             let bits = match observable {
                 Observable::Marginal(_) => (Scale::Linear, MARGINAL_BITS),
@@ -97,23 +59,18 @@ impl Shown<'_> {
             };
             arrays.push(pack(&points, number, bits, &mut blocks));
         }
-        for one in &mut arrays {
-            one.frames.clone_from(&numbers);
-        }
-        for name in fields {
+        for name in &fields {
             arrays.push(pack_field(&self.points, name, joint_bits, &mut blocks));
         }
         let frames = self.points.iter();
-        let told = PageData {
-            live: false,
-            scene: &scene,
-            plane: self.plane,
-            across: &self.across,
-            frames: frames
-                .map(|point| Frame::new(point, &subject.family))
-                .collect(),
-            arrays,
-        };
+        let frames = frames.map(|point| frame(point, &subject.family));
+        let mut told = scene(sweep, self.labels, &fields);
+        told["live"] = json!(false);
+        told["plane"] = self.plane.map_or(Value::Null, PlaneScene::told);
+        // Of a map, the value of its second parameter for every frame.
+        told["across"] = json!(self.across);
+        told["frames"] = frames.collect();
+        told["arrays"] = arrays.into();
         let told = deflate(&serde_json::to_vec(&told)?);
         Ok(html::page(&sweep.settings.title, &told, &blocks, false))
     }
@@ -124,85 +81,77 @@ fn add(
     blocks: &mut Vec<Vec<u8>>,
     (frames, at): (&[&[f64]], &[f64]),
     (scale, bits): (Scale, u32),
-) -> Packing {
+) -> Value {
     let packed = Packed::new(frames, at, scale, bits);
     blocks.push(packed.bytes);
-    Packing {
-        block: blocks.len() - 1,
-        top: packed.top,
-        levels: packed.levels,
-        scale: packed.scale,
-        cells: packed.cells,
-    }
+    json!({
+        "block": blocks.len() - 1,
+        "top": packed.top,
+        "levels": packed.levels,
+        "scale": packed.scale.word(),
+        "cells": packed.cells,
+    })
+}
+
+/// Edges of the cells along each axis.
+pub(super) fn edges<'a>(axes: impl IntoIterator<Item = &'a Axis>) -> Vec<&'a [f64]> {
+    axes.into_iter().map(Axis::edges).collect()
 }
 
 /// Packs a field of a passage at all points that have it; where it is not known it is shown as zero.
-fn pack_field(points: &[&Point], name: &str, bits: u32, blocks: &mut Vec<Vec<u8>>) -> Arrays {
+fn pack_field(points: &[&Point], name: &str, bits: u32, blocks: &mut Vec<Vec<u8>>) -> Value {
     let known = points.iter().enumerate().filter_map(|(number, point)| {
-        let field = point
-            .report
-            .fields
-            .iter()
-            .find(|field| field.name == name)?;
-        Some((number, point.value, field))
+        let mut fields = point.report.fields.iter();
+        Some((
+            number,
+            point.value,
+            fields.find(|field| field.name == name)?,
+        ))
     });
     let known: Vec<_> = known.collect();
     let values: Vec<&[f64]> = known.iter().map(|one| one.2.values.as_slice()).collect();
     let at: Vec<f64> = known.iter().map(|one| one.1).collect();
     let axes = known.first().map_or(&[][..], |one| &one.2.axes[..]);
-    Arrays {
-        frames: known.iter().map(|one| one.0).collect(),
-        edges: axes.iter().map(|axis| axis.edges().to_vec()).collect(),
-        values: (!known.is_empty()).then(|| add(blocks, (&values, &at), (Scale::Root, bits))),
-        band: None,
-        band_is: None,
-    }
+    json!({
+        "frames": known.iter().map(|one| one.0).collect::<Vec<_>>(),
+        "edges": edges(axes),
+        "values": (!known.is_empty()).then(|| add(blocks, (&values, &at), (Scale::Root, bits))),
+        "band": null,
+        "band_is": null,
+    })
 }
 
-/// Packs the values of one watched density, and of a marginal its band.
+/// Packs the values of one watched density at numbered points that have it, and of a marginal its band.
 fn pack(
-    points: &[&Point],
+    points: &[(usize, &Point)],
     observable: usize,
     (scale, bits): (Scale, u32),
     blocks: &mut Vec<Vec<u8>>,
-) -> Arrays {
-    let at: Vec<f64> = points.iter().map(|point| point.value).collect();
-    let densities = || {
-        points
-            .iter()
-            .filter_map(|point| point.densities.get(observable))
-    };
-    let frames: Vec<&[f64]> = densities()
-        .map(|one| one.density.values.as_slice())
+) -> Value {
+    let at: Vec<f64> = points.iter().map(|(_, point)| point.value).collect();
+    let densities = points.iter();
+    let densities: Vec<&EstimatedDensity> = densities
+        .filter_map(|(_, point)| point.densities.get(observable))
         .collect();
-    let Some(first) = densities().next() else {
-        return Arrays {
-            frames: Vec::new(),
-            edges: Vec::new(),
-            values: None,
-            band: None,
-            band_is: None,
-        };
-    };
-    let values = add(blocks, (&frames, &at), (scale, bits));
-    let is_marginal = matches!(first.observable, Observable::Marginal(_));
-    let bands: Option<Vec<_>> = densities().map(band).collect();
+    let frames = densities.iter().map(|one| one.density.values.as_slice());
+    let frames: Vec<&[f64]> = frames.collect();
+    let first = densities.first();
+    let values = first.map(|_| add(blocks, (&frames, &at), (scale, bits)));
+    let is_marginal = first.is_some_and(|one| matches!(one.observable, Observable::Marginal(_)));
+    let bands: Option<Vec<_>> = densities.iter().map(|one| band(one)).collect();
     let bands = bands.filter(|_| is_marginal);
-    let band_is = bands
-        .as_ref()
-        .and_then(|bands| bands.first())
-        .map(|one| one.1);
+    let first_band = bands.as_ref().and_then(|bands| bands.first());
+    let band_is = first_band.map(|one| one.1);
     let band = bands.map(|bands| {
         let frames: Vec<&[f64]> = bands.iter().map(|one| one.0.as_slice()).collect();
         add(blocks, (&frames, &at), (Scale::Root, BAND_BITS))
     });
-    Arrays {
-        frames: Vec::new(),
-        edges: (first.density.axes.iter())
-            .map(|axis| axis.edges().to_vec())
-            .collect(),
-        values: Some(values),
-        band,
-        band_is,
-    }
+    json!({
+        // Numbers of the frames that have a density, ascending.
+        "frames": points.iter().map(|one| one.0).collect::<Vec<_>>(),
+        "edges": first.map_or(Vec::new(), |one| edges(&one.density.axes)),
+        "values": values,
+        "band": band,
+        "band_is": band_is,
+    })
 }

@@ -5,16 +5,24 @@
 //! arithmetic: every operation is one that IEEE 754 rounds exactly, in the same order.
 
 use miniz_oxide::deflate::compress_to_vec_zlib;
-use serde::Serialize;
 
 /// How values lie on the steps of a quantisation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Scale {
     /// Evenly.
     Linear,
     /// Their square roots do, with the value's sign: small values keep more digits.
     Root,
+}
+
+impl Scale {
+    /// The word that the page knows it by.
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::Root => "root",
+        }
+    }
 }
 
 /// Frames of equally many values, one frame a parameter value, in few bytes.

@@ -3,13 +3,13 @@
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use crate::continuation::Subject;
 use crate::continuation::curve::{
     CodimensionTwo, Curve, CurvePoint, LevelCurve, Plane, codimension_two, level_name,
 };
-use crate::continuation::map::{FloodedRegion, MapNode, PlaneState, Seed, flood};
+use crate::continuation::map::{MapNode, PlaneState, Seed, flood};
 use crate::density::Observable;
 use crate::run::{curve_name, end_labels, point_labels};
 use crate::sweep_file::Sweep;
@@ -19,77 +19,12 @@ use crate::system::Family;
 const PICTURE: [usize; 2] = [240, 240];
 
 /// The plane of a sweep with a second parameter.
-#[derive(Debug, Serialize)]
 pub(super) struct PlaneScene {
-    /// The swept parameter and the second one.
-    sides: [Side; 2],
-    /// What its map found; `None` of a live page, which has none yet.
-    pub(super) found: Option<PlaneFound>,
-}
-
-#[derive(Debug, Serialize)]
-struct Side {
-    name: String,
-    symbol: String,
-    from: f64,
-    to: f64,
-}
-
-/// What a map found.
-#[derive(Debug, Serialize)]
-pub(super) struct PlaneFound {
-    /// Nodes that were solved.
-    nodes: usize,
-    /// Of every watched density.
-    regions: Vec<Regions>,
-    curves: Vec<PlaneCurve>,
-    points: Vec<SpecialPoint>,
-}
-
-/// The regions of one watched density.
-#[derive(Debug, Serialize)]
-struct Regions {
-    /// Signatures in words; empty where there is no density.
-    kinds: Vec<String>,
-    size: [usize; 2],
-    /// The kind of every pixel, a byte each, in base64; rows from the lower end of the second parameter upward.
-    pixels: String,
-    places: Vec<Anchor>,
-}
-
-/// Where there is room for the words of a region.
-#[derive(Debug, Serialize)]
-struct Anchor {
-    kind: usize,
-    /// In the box with sides of length one.
-    at: [f64; 2],
-    share: f64,
-}
-
-/// A curve from end to end.
-#[derive(Debug, Serialize)]
-struct PlaneCurve {
-    name: String,
-    /// Number among the observables; none of the curve of a level.
-    observable: Option<usize>,
-    method: String,
-    /// Both parameters, the error as a share of the sides of the box, and the way to the edge of the band.
-    points: Vec<[f64; 5]>,
-    statuses: Vec<&'static str>,
-    labels: Vec<String>,
-}
-
-/// A point of codimension two.
-#[derive(Debug, Serialize)]
-struct SpecialPoint {
-    label: String,
-    kind: &'static str,
-    at: [f64; 2],
-    /// A share of the sides of the box.
-    error: f64,
-    status: &'static str,
-    observable: String,
-    curves: String,
+    plane: Plane,
+    /// Symbols of the swept parameter and the second one.
+    symbols: [String; 2],
+    /// What its map found; null of a live page, which has none yet.
+    pub(super) found: Value,
 }
 
 impl PlaneScene {
@@ -102,20 +37,21 @@ impl PlaneScene {
 
     /// The box of a plane.
     pub(super) fn of(plane: &Plane, family: &Family) -> Self {
-        let symbol = |name: &str| {
-            let mut parameters = family.model().parameters.iter();
-            let known = parameters.find(|parameter| parameter.name == name);
-            known
-                .map_or(name, |parameter| parameter.symbol.as_str())
-                .to_owned()
-        };
-        let sides = plane.sides().each_ref().map(|side| Side {
-            name: side.parameter.clone(),
-            symbol: symbol(&side.parameter),
-            from: side.from,
-            to: side.to,
+        let sides = plane.sides().each_ref();
+        Self {
+            plane: plane.clone(),
+            symbols: sides.map(|side| family.symbol_of(&side.parameter).to_owned()),
+            found: Value::Null,
+        }
+    }
+
+    /// What the page is told of it.
+    pub(super) fn told(&self) -> Value {
+        let sides = self.plane.sides().iter().zip(&self.symbols);
+        let sides = sides.map(|(side, symbol)| {
+            json!({ "name": side.parameter, "symbol": symbol, "from": side.from, "to": side.to })
         });
-        Self { sides, found: None }
+        json!({ "sides": sides.collect::<Vec<_>>(), "found": self.found })
     }
 
     /// The same with what was found there; `start` is the label of the row that the first curve was begun at, if it
@@ -136,11 +72,15 @@ impl PlaneScene {
         };
         let observables = subject.observables.iter().enumerate();
         let regions = observables
-            .map(|(number, &observable)| self.regions(nodes, number, &lines(observable)))
-            .collect();
+            .map(|(number, &observable)| self.regions(nodes, number, &lines(observable)));
         let told = curves.iter().enumerate().map(|(index, curve)| {
             let start = if index == 0 { start } else { "start" };
-            PlaneCurve::new(subject, (index, curve), start)
+            let mut observables = subject.observables.iter();
+            // The number among the observables.
+            let observable = observables.position(|one| *one == curve.observable);
+            let labels = point_labels(curve, start);
+            let words = (curve_name(index), curve.kind.name().to_owned());
+            curve_told(words, observable, &curve.points, &labels)
         });
         let is_first = curves.is_empty();
         let of_levels = levels.iter().enumerate().map(|(index, curve)| {
@@ -149,31 +89,34 @@ impl PlaneScene {
             } else {
                 "start"
             };
-            PlaneCurve::of_level((index, curve), start)
+            let labels = end_labels(&curve.ends, (curve.start, start), curve.points.len());
+            curve_told(
+                (level_name(index), curve.words()),
+                None,
+                &curve.points,
+                &labels,
+            )
         });
-        let told = told.chain(of_levels);
         let points = codimension_two(curves);
-        let points = points
-            .iter()
-            .map(|one| SpecialPoint::new(&subject.family, one));
-        let found = PlaneFound {
-            nodes: nodes.len(),
-            regions,
-            curves: told.collect(),
-            points: points.collect(),
-        };
-        Self {
-            found: Some(found),
-            ..self
-        }
+        let points = points.iter().map(|one| point_told(&subject.family, one));
+        let found = json!({
+            // Nodes that were solved.
+            "nodes": nodes.len(),
+            "regions": regions.collect::<Vec<_>>(),
+            "curves": told.chain(of_levels).collect::<Vec<_>>(),
+            "points": points.collect::<Vec<_>>(),
+        });
+        Self { found, ..self }
     }
 
     /// Where two values lie in the box with sides of length one.
     fn share(&self, values: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|k| (values[k] - self.sides[k].from) / (self.sides[k].to - self.sides[k].from))
+        let sides = self.plane.sides();
+        [0, 1].map(|k| (values[k] - sides[k].from) / (sides[k].to - sides[k].from))
     }
 
-    fn regions(&self, nodes: &[MapNode], observable: usize, lines: &[Vec<[f64; 2]>]) -> Regions {
+    /// The regions of one watched density.
+    fn regions(&self, nodes: &[MapNode], observable: usize, lines: &[Vec<[f64; 2]>]) -> Value {
         let mut kinds: Vec<String> = Vec::new();
         let mut seeds = Vec::new();
         let mut finest = 0;
@@ -198,76 +141,59 @@ impl PlaneScene {
             region.map_or(0, |one| one.kind.min(255) as u8)
         };
         let pixels: Vec<u8> = found.pixels.iter().map(kind).collect();
-        let place = |region: &FloodedRegion| Anchor {
-            kind: region.kind,
-            at: region.inside,
-            share: region.share,
-        };
-        Regions {
-            kinds,
-            size: PICTURE,
-            pixels: STANDARD.encode(pixels),
-            places: found.regions.iter().map(place).collect(),
-        }
+        // Where there is room for the words of a region, in the box with sides of length one.
+        let places = found
+            .regions
+            .iter()
+            .map(|one| json!({ "kind": one.kind, "at": one.inside, "share": one.share }));
+        json!({
+            // Signatures in words; empty where there is no density.
+            "kinds": kinds,
+            "size": PICTURE,
+            // The kind of every pixel, a byte each; rows from the lower end of the second parameter upward.
+            "pixels": STANDARD.encode(pixels),
+            "places": places.collect::<Vec<_>>(),
+        })
     }
 }
 
-impl PlaneCurve {
-    fn new(subject: &Subject, (index, curve): (usize, &Curve), start: &str) -> Self {
-        let mut observables = subject.observables.iter();
-        Self {
-            name: curve_name(index),
-            observable: observables.position(|one| *one == curve.observable),
-            method: curve.kind.name().to_owned(),
-            labels: point_labels(curve, start),
-            ..Self::through(&curve.points)
-        }
-    }
-
-    /// The curve of a level, which is of no density.
-    fn of_level((index, curve): (usize, &LevelCurve), start: &str) -> Self {
-        let begun = (curve.start, start);
-        Self {
-            name: level_name(index),
-            method: curve.words(),
-            labels: end_labels(&curve.ends, begun, curve.points.len()),
-            ..Self::through(&curve.points)
-        }
-    }
-
-    /// The points alone.
-    fn through(points: &[CurvePoint]) -> Self {
-        let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
-        let point = |point: &CurvePoint| {
-            let ([x, y], [to_x, to_y]) = (point.values, point.to_edge.map(finite));
-            [x, y, finite(point.error), to_x, to_y]
-        };
-        let statuses = points.iter().map(|point| point.status().word());
-        Self {
-            name: String::new(),
-            observable: None,
-            method: String::new(),
-            points: points.iter().map(point).collect(),
-            statuses: statuses.collect(),
-            labels: Vec::new(),
-        }
-    }
+/// A curve from end to end, by its name and what it is; of a point both parameters, the error as a share of the sides
+/// of the box, and the way to the edge of the band.
+fn curve_told(
+    (name, method): (String, String),
+    observable: Option<usize>,
+    points: &[CurvePoint],
+    labels: &[String],
+) -> Value {
+    let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
+    let point = |point: &CurvePoint| {
+        let ([x, y], [to_x, to_y]) = (point.values, point.to_edge.map(finite));
+        [x, y, finite(point.error), to_x, to_y]
+    };
+    let statuses = points.iter().map(|point| point.status().word());
+    json!({
+        "name": name,
+        "observable": observable,
+        "method": method,
+        "points": points.iter().map(point).collect::<Vec<_>>(),
+        "statuses": statuses.collect::<Vec<_>>(),
+        "labels": labels,
+    })
 }
 
-impl SpecialPoint {
-    fn new(family: &Family, point: &CodimensionTwo) -> Self {
-        let observables = point.observables.iter().map(|one| one.name(family));
-        let curves = point.curves.iter().map(|&index| curve_name(index));
-        Self {
-            label: point.label.clone(),
-            kind: point.kind.name(),
-            at: point.values,
-            error: point.error,
-            status: point.status().word(),
-            observable: observables.collect::<Vec<_>>().join(" "),
-            curves: curves.collect::<Vec<_>>().join(" "),
-        }
-    }
+/// A point of codimension two; its error is a share of the sides of the box.
+fn point_told(family: &Family, point: &CodimensionTwo) -> Value {
+    let observables = point.observables.iter().map(|one| one.name(family));
+    let curves = point.curves.iter().map(|&index| curve_name(index));
+    json!({
+        "label": point.label,
+        "kind": point.kind.name(),
+        "at": point.values,
+        "error": point.error,
+        "status": point.status().word(),
+        "observable": observables.collect::<Vec<_>>().join(" "),
+        "curves": curves.collect::<Vec<_>>().join(" "),
+    })
 }
 
 /// The values of both parameters that make the coarse grid of a map, ascending, at most so many of each; both ends are

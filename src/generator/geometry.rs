@@ -4,6 +4,7 @@ use super::GeneratorOptions;
 use super::modes::ModeAxis;
 use super::scheme::{AdvectiveScheme, DAMPING_BESIDE_MODES, Dissipation, REACH, Window};
 use super::smooth::{EVEN_OFFSETS, GAUSS};
+use crate::numerics::sort_descending;
 use crate::space::{Axis, CellSpace, Series};
 use crate::system::{System, closed_ends};
 
@@ -207,7 +208,7 @@ fn breaks(
             Some((sharpness, at))
         })
         .collect();
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    sort_descending(&mut found, |one| one.0);
     let mut kept: Vec<Break> = Vec::new();
     for (_, one) in found {
         if (kept.iter()).all(|other| other.face.abs_diff(one.face) >= REACH) {

@@ -1,5 +1,6 @@
 //! Axes graded toward switching surfaces, fine enough for the layer in which the kink of the density lives.
 
+use crate::numerics::sort_ascending;
 use crate::space::Grading;
 use crate::system::{SwitchingSurface, System, natural_ends};
 
@@ -71,7 +72,7 @@ pub fn automatic_grading(
     let mut wanted: Vec<(f64, f64)> = wanted
         .chain(natural.map(|(_, end)| (end, NATURAL_SHARE * uniform)))
         .collect();
-    wanted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_ascending(&mut wanted, |one| one.0);
     let smallest = wanted
         .iter()
         .fold(f64::INFINITY, |least, one| least.min(one.1));

@@ -10,6 +10,7 @@ use std::ops::RangeInclusive;
 use super::generator::rough_masses;
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::density::{Detail, QuantityMoments};
+use crate::numerics::sort_ascending;
 use crate::space::{Axis, CellSpace};
 use crate::system::{BoundQuantity, Family, LANES, Lanes, SystemError};
 
@@ -313,7 +314,7 @@ impl Look<'_> {
             .into_iter()
             .zip(masses.iter().copied())
             .collect();
-        pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sort_ascending(&mut pairs, |one| one.0);
         let quantile = |ordered: Vec<(f64, f64)>| {
             let mut beyond = 0.0;
             let reached = ordered.iter().find(|(_, mass)| {

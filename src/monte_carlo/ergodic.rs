@@ -2,14 +2,13 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
-
 use super::batch::{Batch, Histogram, Limits, Purpose, key, random_point};
 use super::estimate::{BLOCKS, Estimate, Tally};
 use super::phases::Phases;
 use super::turning::Turning;
 use super::{MonteCarloError, Relaxation};
 use crate::cancellation::{Cancellation, Cancelled};
+use crate::numerics::in_parallel;
 use crate::sampling::{CellLookup, Integrator, Stepper, WholeTurn};
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes, System};
@@ -175,17 +174,13 @@ impl Worker<'_> {
     /// Runs everything and merges the tasks in order.
     pub(super) fn all(&self, space: &CellSpace) -> Result<Estimate, MonteCarloError> {
         let (tasks, blocks) = tasks(self.run.batches());
-        let parts: Result<Vec<Tally>, MonteCarloError> = tasks
-            .into_par_iter()
-            .with_max_len(1)
-            .map(|batches| self.task(batches, blocks))
-            .collect();
+        let task = |number: usize| self.task(tasks[number].clone(), blocks);
+        let tallies = in_parallel(tasks.len(), task)?;
         let axes: Vec<usize> = self.turns.iter().map(|turn| turn.axis).collect();
         let window = (self.window() * self.run.stride) as f64 * self.run.time_step;
-        let blocks: Vec<Tally> = parts?;
         Ok(Estimate::new(
             space,
-            blocks,
+            tallies,
             self.phases.as_ref(),
             (&axes, window),
         ))

@@ -2,11 +2,10 @@
 //! with half of it, driven by the same Wiener process, so that their difference is that of the steps and hardly that of
 //! chance.
 
-use rayon::prelude::*;
-
 use super::Relaxation;
 use super::batch::{Purpose, key};
 use crate::cancellation::{Cancellation, Cancelled};
+use crate::numerics::in_parallel;
 use crate::sampling::{Integrator, NormalStream, Stepper};
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes, System};
@@ -88,11 +87,10 @@ pub(crate) fn step_bias(
     }
     let steps = (integrator, time_step);
     let comparison = Comparison::new(system, space, relaxation, steps, cancellation);
-    let batches: Result<Vec<_>, Cancelled> = (0..BATCHES)
-        .into_par_iter()
-        .map(|batch| comparison.batch(seed, batch))
-        .collect();
-    let lanes = batches?.concat();
+    let batches = in_parallel(BATCHES as usize, |batch| {
+        comparison.batch(seed, batch as u64)
+    })?;
+    let lanes = batches.concat();
     let additive = (system.noises().iter()).all(|noise| noise.additive().is_some());
     // A path that is put back at a wall is so to first order at best.
     let additive = additive && system.facts().reflecting.is_empty();

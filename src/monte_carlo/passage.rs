@@ -3,8 +3,6 @@
 //! Both paths of a pair see the same Wiener process and end by the same random number, so that what they differ by is
 //! what the step does.
 
-use rayon::prelude::*;
-
 use super::MonteCarloError;
 use super::batch::{Batch, Limits, Purpose, key};
 use super::ergodic::Starts;
@@ -13,6 +11,7 @@ use super::exit_times::{Block, ExitTimes};
 use super::halving::over_two_steps;
 use super::walk::{Border, Chance, PassageTarget, Walk};
 use crate::cancellation::{Cancellation, Cancelled};
+use crate::numerics::in_parallel;
 use crate::sampling::{Integrator, NormalStream, Stepper};
 use crate::space::CellSpace;
 use crate::system::{BoundQuantity, LANES, System};
@@ -107,12 +106,8 @@ struct Paths<'a> {
 
 impl Paths<'_> {
     fn all(&self) -> Result<ExitTimes, MonteCarloError> {
-        let blocks: Result<Vec<Block>, MonteCarloError> = (0..BLOCKS)
-            .into_par_iter()
-            .with_max_len(1)
-            .map(|number| self.block(number))
-            .collect();
-        Ok(ExitTimes::new(blocks?, self.run.longest, self.parts))
+        let blocks = in_parallel(BLOCKS, |number| self.block(number))?;
+        Ok(ExitTimes::new(blocks, self.run.longest, self.parts))
     }
 
     fn block(&self, number: usize) -> Result<Block, MonteCarloError> {

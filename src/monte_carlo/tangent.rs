@@ -8,13 +8,12 @@
 //! over time has weights that are small at both ends, 1 - cos 2πt/T, so that what turns evenly averages out; and if its
 //! halves differ by more than by chance, deviations had not settled, which is an error too.
 
-use rayon::prelude::*;
-
 use super::batch::{Limits, Purpose, key};
 use super::ergodic::Starts;
 use super::halving::over_two_steps;
 use super::{MonteCarloError, Relaxation};
 use crate::cancellation::{Cancellation, Cancelled};
+use crate::numerics::in_parallel;
 use crate::sampling::{Integrator, NormalStream};
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes, System, Tangent};
@@ -129,11 +128,8 @@ pub(crate) fn exponent_along_trajectories(
         run,
         cancellation,
     };
-    let batches: Result<Vec<_>, Cancelled> = (0..BATCHES)
-        .into_par_iter()
-        .map(|number| follower.batch(number))
-        .collect();
-    let Some(lanes) = batches?.into_iter().collect::<Option<Vec<_>>>() else {
+    let batches = in_parallel(BATCHES, |number| follower.batch(number))?;
+    let Some(lanes) = batches.into_iter().collect::<Option<Vec<_>>>() else {
         return Ok(None);
     };
     let lanes = lanes.concat();

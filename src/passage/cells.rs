@@ -11,7 +11,7 @@ use std::iter;
 use super::PassageError;
 use super::pocket::has_pocket;
 use crate::generator::levels;
-use crate::numerics::{bisected, narrowed};
+use crate::numerics::{bisected, narrowed, sort_descending};
 use crate::space::{Axis, CellSpace, Grading};
 use crate::system::{BoundQuantity, System};
 
@@ -135,7 +135,7 @@ fn with_faces(
         (false, false) => None,
     };
     places.extend(ends.iter().filter_map(of_end));
-    places.sort_by(|one, other| other.1.total_cmp(&one.1));
+    sort_descending(&mut places, |one| one.1);
     let Some((&(first, _), others)) = places.split_first() else {
         return Ok(Axis::uniform(from, to, count)?);
     };

@@ -120,12 +120,7 @@ pub(super) fn columns<'a>(family: &'a Family, plane: &Plane) -> Columns<'a, Codi
 
 /// The same for LaTeX (with the package `booktabs`), values rounded to their errors.
 fn codimension_two_tex(family: &Family, plane: &Plane, curves: &[Curve]) -> String {
-    let symbols = parameters(plane).map(|name| {
-        let mut parameters = family.model().parameters.iter();
-        let known = parameters.find(|parameter| parameter.name == name);
-        latex::mathematics(known.map_or(name.as_str(), |parameter| parameter.symbol.as_str()))
-    });
-    let [first, second] = symbols;
+    let [first, second] = parameters(plane).map(|name| latex::mathematics(family.symbol_of(&name)));
     let mut text = format!(
         "\\begin{{tabular}}{{llrrll}}\n\\toprule\n & & ${first}$ & ${second}$ & density & curves \\\\\n\\midrule\n"
     );

@@ -1,11 +1,10 @@
 //! Samples the transitions of all cells that can be reached from given ones.
 
-use rayon::prelude::*;
-
 use super::column::{Column, ColumnSampler, SINK};
 use super::phase::PhaseStep;
 use super::{SampledTransitions, SamplingError, SamplingOptions};
 use crate::cancellation::{Cancellation, Cancelled};
+use crate::numerics::in_parallel;
 use crate::space::CellSpace;
 use crate::system::System;
 
@@ -43,8 +42,7 @@ pub fn sample_transitions(
     let mut columns: Vec<(usize, Column)> = Vec::new();
     let mut frontier = unknown_of(seeds.iter().copied(), &mut known);
     while !frontier.is_empty() {
-        let sampled: Result<Vec<_>, _> = frontier.par_iter().with_max_len(1).map(sample).collect();
-        let sampled = sampled?;
+        let sampled = in_parallel(frontier.len(), |number| sample(&frontier[number]))?;
         let ends = sampled.iter().flat_map(|(_, column)| &column.destinations);
         let ends = ends.copied().filter(|&cell| cell != SINK);
         frontier = unknown_of(ends.map(|cell| cell as usize), &mut known);

@@ -1,13 +1,12 @@
 //! A first look at a system with a few free trajectories: where its mass is, how wide it spreads, how fast it
 //! moves. From it come the cells to start from and steps that suit the system.
 
-use rayon::prelude::*;
-
 use super::Integrator;
 use super::integrator::{Position, Stepper, positions};
 use super::jacobian::{LocalRates, local_rates};
 use super::random::{NormalStream, StreamKey, mix, unit};
 use crate::cancellation::{Cancellation, Cancelled};
+use crate::numerics::in_parallel;
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes, System};
 
@@ -230,10 +229,10 @@ pub fn pilot(
     let wanted = (settling / step) as usize;
     let steps = wanted.clamp(RECORDS, MOST_STEPS);
     let stepper = Stepper::new(system, Integrator::StochasticHeun, step, cancellation);
-    let run = |batch: u64| trajectories(&stepper, system, space, seed, batch, steps);
-    let records: Result<Vec<Record>, _> = (0..BATCHES).into_par_iter().map(run).collect();
+    let run = |batch| trajectories(&stepper, system, space, seed, batch as u64, steps);
+    let records = in_parallel(BATCHES as usize, run)?;
     let mut record = Record::new(system, space);
-    for of_batch in &records? {
+    for of_batch in &records {
         record.join(of_batch);
     }
     if record.inside == 0 {

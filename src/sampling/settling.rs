@@ -4,13 +4,12 @@
 //! settle, as that of a spring whose force grows exponentially. Here the step of a batch is found again every few
 //! steps, and trajectories that go to infinity are told from those that stay.
 
-use rayon::prelude::*;
-
 use super::Integrator;
 use super::integrator::{Position, Stepper, positions};
 use super::jacobian::Around;
 use super::random::{NormalStream, StreamKey, mix, unit};
 use crate::cancellation::{Cancellation, Cancelled};
+use crate::numerics::in_parallel;
 use crate::system::{LANES, Lanes, System};
 
 /// Batches of trajectories: the first starts in the middle of the box, the others all over it.
@@ -73,11 +72,10 @@ pub(crate) fn settled(
     let Some((mut all, middle)) = run(0, unknown)? else {
         return Ok(None);
     };
-    let others: Result<Vec<_>, _> = (1..BATCHES)
-        .into_par_iter()
-        .map(|number| run(number, middle))
-        .collect();
-    for (batch, _) in others?.into_iter().flatten() {
+    let others = in_parallel(BATCHES as usize - 1, |number| {
+        run(number as u64 + 1, middle)
+    })?;
+    for (batch, _) in others.into_iter().flatten() {
         all.passed = hull(&all.passed, &batch.passed);
         all.visited = hull(&all.visited, &batch.visited);
     }

@@ -14,6 +14,7 @@ use super::SpectrumError;
 use super::grid::Grid;
 use super::model::{GridModel, Products, REACH, ReducedModel, in_order, standing};
 use crate::cancellation::Cancellation;
+use crate::numerics::sort_descending;
 use crate::stationary::generator::{
     AbsorbingWork, RateError, RateOptions, Shifted, ShiftedPattern,
 };
@@ -107,7 +108,7 @@ fn slowest(products: &Products, size: usize, fastest: f64) -> Vec<Complex<f64>> 
     let all = products.model(size).as_ref().map(ReducedModel::eigenvalues);
     let is_asked = |one: &Complex<f64>| one.re < 0.0 && one.im <= fastest;
     let mut all: Vec<Complex<f64>> = all.into_iter().flatten().filter(is_asked).collect();
-    all.sort_by(|a, b| b.re.total_cmp(&a.re));
+    sort_descending(&mut all, |one| one.re);
     all
 }
 

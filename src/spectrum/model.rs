@@ -4,7 +4,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 use sprs::CsMat;
 
 use super::transfer::Transfer;
-use crate::numerics::dot;
+use crate::numerics::{dot, sort_ascending, sort_descending};
 use crate::stationary::generator::product;
 
 /// Overlaps of the two spaces smaller than this beside the largest are rounding.
@@ -205,13 +205,13 @@ pub(super) fn stands((value, change): &(Complex<f64>, f64)) -> bool {
 
 /// Puts modes in the order of their decay rates, of those with the same one in the order of their frequencies.
 pub(super) fn in_order<T>(modes: &mut [T], value: impl Fn(&T) -> Complex<f64>) {
-    modes.sort_by(|a, b| value(b).re.total_cmp(&value(a).re));
+    sort_descending(modes, |one| value(one).re);
     let mut first = 0;
     for end in 1..=modes.len() {
         let is_same =
             end < modes.len() && value(&modes[end]).re >= (1.0 + SAME) * value(&modes[first]).re;
         if !is_same {
-            modes[first..end].sort_by(|a, b| value(a).im.total_cmp(&value(b).im));
+            sort_ascending(&mut modes[first..end], |one| value(one).im);
             first = end;
         }
     }

@@ -14,6 +14,7 @@ use super::model::{GridModel, in_order};
 use super::motion::{Motion, of_ends};
 use super::real_shifts::at_real_shifts;
 use crate::cancellation::Cancellation;
+use crate::numerics::sort_ascending;
 use crate::space::CellSpace;
 use crate::stationary::generator::{AbsorbingWork, RateOptions};
 
@@ -129,7 +130,7 @@ fn of_model(grid: &Grid, mut found: GridModel, most: usize, motion: &Motion) -> 
             })
         });
     let mut carried: Vec<GridMode> = all.collect();
-    carried.sort_by(|a, b| a.likely_decay().total_cmp(&b.likely_decay()));
+    sort_ascending(&mut carried, |one| one.likely_decay());
     let first_left = carried.get(most).or(carried.last());
     let complete = first_left.map_or(0.0, GridMode::likely_decay);
     carried.truncate(most);

@@ -10,6 +10,7 @@ use super::SpectrumError;
 use super::grid::{Grid, ending};
 use super::model::{GridModel, Products, REACH, ReducedModel, balanced, in_order, standing};
 use crate::cancellation::Cancellation;
+use crate::numerics::sort_ascending;
 use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions};
 
 /// Vectors of either side by which a model grows before its eigenvalues are looked at again.
@@ -125,7 +126,7 @@ impl Standing {
         let is_hidden = |one: &Complex<f64>| one.re >= 0.0 && one.norm() <= ROUNDING * shift;
         let hides = all.iter().any(is_hidden);
         let mut all: Vec<Complex<f64>> = all.into_iter().filter(|one| one.re < 0.0).collect();
-        all.sort_by(|a, b| away(*a).total_cmp(&away(*b)));
+        sort_ascending(&mut all, |one| away(*one));
         let farthest = all.len();
         let mut modes = standing(&all, &fewer);
         let within = modes

@@ -14,6 +14,7 @@ use super::slowest::slowest;
 use super::{SpectrumError, Steady};
 use crate::cancellation::Cancellation;
 use crate::generator::GeneratorOptions;
+use crate::numerics::sort_ascending;
 use crate::space::CellSpace;
 use crate::stationary::generator::{AbsorbingWork, RateOptions};
 use crate::system::System;
@@ -143,7 +144,7 @@ fn matched(modes: &[GridMode], others: &[GridMode]) -> Vec<Complex<f64>> {
             ));
         }
     }
-    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_ascending(&mut pairs, |one| one.0);
     let mut differences = vec![both(f64::INFINITY); modes.len()];
     let mut taken = vec![false; others.len()];
     for (_, index, other) in pairs {

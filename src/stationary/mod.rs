@@ -41,8 +41,8 @@ mod hessenberg;
 pub(crate) use hessenberg::Triangle;
 mod transition_matrix;
 
-pub(crate) use transition_matrix::{Changed, MOST_APPLICATIONS, without_groups};
 pub use transition_matrix::{
     ClassShare, Info, Options, Outcome, SecondEigenvalue, Solver, StationaryError, SteadyState,
     second_eigenvalue, solve,
 };
+pub(crate) use transition_matrix::{MOST_APPLICATIONS, without_groups};

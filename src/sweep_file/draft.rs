@@ -78,7 +78,7 @@ impl MethodKind {
 }
 
 /// Total variation that is far below what a figure shows, and reached in seconds with two axes.
-const ACCURACY: f64 = 1e-3;
+pub(super) const ACCURACY: f64 = 1e-3;
 
 /// The word that leaves a choice to the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -238,7 +238,7 @@ pub(super) struct PassageDraft {
 }
 
 /// What the file says.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Draft {
     pub(super) title: Option<String>,
     pub(super) model: Option<Arc<Model>>,
@@ -257,7 +257,7 @@ pub(super) struct Draft {
     /// The curves that are followed from what is located.
     pub(super) curve: CurveDraft,
     /// Wanted error of the watched densities where counts are left to the program.
-    pub(super) accuracy: f64,
+    pub(super) accuracy: Option<f64>,
     /// The axes in the order given.
     pub(super) axes: Vec<AxisDraft>,
     pub(super) method: MethodSettings,
@@ -293,46 +293,6 @@ pub(super) struct Draft {
     pub(super) locate: LocateOptions,
     pub(super) figures_at: Option<Vec<f64>>,
     pub(super) figures: FigureSettings,
-}
-
-impl Default for Draft {
-    fn default() -> Self {
-        Self {
-            title: None,
-            model: None,
-            noise_kind: None,
-            equations: EquationsDraft::default(),
-            parameters: Vec::new(),
-            parameter: None,
-            from: None,
-            to: None,
-            points: None,
-            map: MapDraft::default(),
-            curve: CurveDraft::default(),
-            accuracy: ACCURACY,
-            axes: Vec::new(),
-            method: MethodSettings::default(),
-            marginals: None,
-            joint: None,
-            measures: None,
-            bins: Vec::new(),
-            averaged: Vec::new(),
-            regions: Vec::new(),
-            visits: Vec::new(),
-            levels: Vec::new(),
-            passages: Vec::new(),
-            exponent: None,
-            exponent_method: None,
-            exponent_steps: None,
-            fixed_point: Vec::new(),
-            slow_modes: None,
-            spectrum: SpectrumDraft::default(),
-            detect: DetectOptions::default(),
-            locate: LocateOptions::default(),
-            figures_at: None,
-            figures: FigureSettings::default(),
-        }
-    }
 }
 
 impl Draft {

@@ -190,12 +190,15 @@ impl Family {
 
     /// Symbol of the path's coordinate, with `_{}` and `^{}`.
     pub fn symbol(&self) -> &str {
-        let of_parameter = || {
-            let mut parameters = self.model.parameters.iter();
-            let known = parameters.find(|parameter| parameter.name == self.path.name());
-            known.map_or(self.path.name(), |parameter| parameter.symbol.as_str())
-        };
+        let of_parameter = || self.symbol_of(self.path.name());
         self.path.symbol().unwrap_or_else(of_parameter)
+    }
+
+    /// Symbol of a parameter, swept or not; its name where the model has none of that name.
+    pub(crate) fn symbol_of<'n>(&'n self, name: &'n str) -> &'n str {
+        let mut parameters = self.model.parameters.iter();
+        let known = parameters.find(|parameter| parameter.name == name);
+        known.map_or(name, |parameter| parameter.symbol.as_str())
     }
 
     /// First and last coordinate; the last may be below the first.

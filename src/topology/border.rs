@@ -13,6 +13,7 @@ use super::rim::{LONGEST_JUMP, POINTS_A_CELL, top_of_ray};
 use super::valley::{Node, Trace, Valley, between, with_errors_beside};
 use super::{Detection, Feature, FeatureKind, Verdict};
 use crate::density::EstimatedDensity;
+use crate::numerics::sort_ascending;
 
 /// Rays on which a crest is looked for.
 const RAYS: usize = 60;
@@ -217,10 +218,10 @@ fn peaks(deviation: f64, detection: &Detection) -> Vec<[f64; 2]> {
     let mut all: Vec<[f64; 2]> = of_kind(detection, FeatureKind::Peak)
         .filter_map(|peak| peak.position.get(..2)?.try_into().ok())
         .collect();
-    all.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    sort_ascending(&mut all, |one| one[0]);
     let is_near = |one: &[f64; 2], other: &[f64; 2]| other[0] - one[0] < SAME_COLUMN * deviation;
     for column in all.chunk_by_mut(is_near) {
-        column.sort_by(|a, b| a[1].total_cmp(&b[1]));
+        sort_ascending(column, |one| one[1]);
     }
     all
 }

@@ -9,6 +9,7 @@ use super::ridge;
 use super::significance::{Judgement, Limits};
 use super::{Feature, FeatureErrors, FeatureKind, Verdict};
 use crate::density::{EstimatedDensity, Kink};
+use crate::numerics::sort_descending;
 
 /// How many absent features of each kind are listed, so that a birth can be followed.
 const ABSENT_LISTED: usize = 4;
@@ -94,7 +95,7 @@ pub(super) fn judge(
             })
         })
         .collect();
-    candidates.sort_by(|a, b| b.persistence.total_cmp(&a.persistence));
+    sort_descending(&mut candidates, |one| one.persistence);
     candidates
 }
 

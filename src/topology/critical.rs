@@ -8,6 +8,7 @@
 use super::FeatureKind;
 use super::field::{Curvature, Field, Jet, Stencil};
 use crate::density::{EstimatedDensity, WIGGLE};
+use crate::numerics::sort_ascending;
 
 /// Most steps of Newton's method.
 const MOST_STEPS: usize = 12;
@@ -291,7 +292,7 @@ fn reach_from(field: &Field<'_>, centre: &[f64], jet: &Jet, pinned: &[bool]) -> 
         return reach;
     }
     let mut principal = jet.principal();
-    principal.sort_by(|a, b| a.value.abs().total_cmp(&b.value.abs()));
+    sort_ascending(&mut principal, |one| one.value.abs());
     let [along, across] = principal;
     let width = (cells[0] * across.direction[0]).hypot(cells[1] * across.direction[1]);
     let wave = 0.5 * width * (across.value / along.value).abs().sqrt();

@@ -10,6 +10,7 @@ use std::collections::BTreeSet;
 use super::enclosure::Enclosure;
 use super::field::{Field, Jet, Stencil};
 use crate::density::EstimatedDensity;
+use crate::numerics::{ends_of, sort_descending};
 
 /// Rays from the point inside.
 const RAYS: usize = 120;
@@ -72,9 +73,7 @@ pub(super) fn summits(
     // What differs by so much along the crest may differ so between any two of its points.
     let spread = |of: &dyn Fn(&Crest) -> f64| {
         let all = crest.iter().map(of);
-        let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), one| {
-            (low.min(one), high.max(one))
-        });
+        let (low, high) = ends_of(all);
         high - low
     };
     let error = spread(&|one| one.rough) + spread(&|one| one.scheme);
@@ -207,7 +206,7 @@ pub(super) fn top_of_ray(
 fn pairs(values: &[f64]) -> Vec<(usize, usize)> {
     let count = values.len();
     let mut order: Vec<usize> = (0..count).collect();
-    order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
+    sort_descending(&mut order, |&place| values[place]);
     let mut top: Vec<Option<usize>> = vec![None; count];
     let mut found = Vec::new();
     let relabel = |top: &mut Vec<Option<usize>>, from: usize, to: usize| {
@@ -236,7 +235,7 @@ fn pairs(values: &[f64]) -> Vec<(usize, usize)> {
     if let (Some(&highest), Some(&lowest)) = (order.first(), order.last()) {
         found.push((highest, lowest));
     }
-    found.sort_by(|a, b| values[b.0].total_cmp(&values[a.0]));
+    sort_descending(&mut found, |one| values[one.0]);
     found
 }
 

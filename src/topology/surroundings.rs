@@ -9,6 +9,7 @@ use super::rim::{RimPeak, Summits, summits};
 use super::significance::{Judgement, Limits};
 use super::{Feature, FeatureErrors, FeatureKind, Signature, Verdict};
 use crate::density::EstimatedDensity;
+use crate::numerics::sort_descending;
 
 /// A crater's rim.
 pub(super) struct Rim {
@@ -124,7 +125,7 @@ pub(super) fn rims(
     let mut saddles: Vec<usize> = present
         .filter_map(|crater| crater.component.death)
         .collect();
-    saddles.sort_by(|&a, &b| grid.values[b].total_cmp(&grid.values[a]));
+    sort_descending(&mut saddles, |&place| grid.values[place]);
     let mut found: Vec<Rim> = Vec::new();
     for saddle in saddles {
         let around = Enclosure::at(grid, saddle);

@@ -22,11 +22,14 @@ fn drawn(result: &SweepResult, style: &FigureStyle) -> Vec<Figure> {
 /// No text leaves the page or touches another. Boxes reach from the lowest to the highest place of any letter of the
 /// font: half of what they overlap in height is air.
 fn assert_readable(figure: &Figure, style: &FigureStyle) {
-    let svg = figure.svg();
-    let svg = Document::parse(&svg).unwrap();
-    let texts = texts(&svg);
+    assert_texts_apart(figure, &Document::parse(&figure.svg()).unwrap(), style);
+}
+
+/// The same of a figure whose drawing is read already.
+fn assert_texts_apart(figure: &Figure, svg: &Document<'_>, style: &FigureStyle) {
+    let texts = texts(svg);
     let unit = style.text_points() / 10.5;
-    let (name, (page, _)) = (&figure.name, size(&svg));
+    let (name, (page, _)) = (&figure.name, size(svg));
     assert!(!texts.is_empty(), "{name} has no text");
     for (number, one) in texts.iter().enumerate() {
         let inside = one.left > -0.5 && one.right < page[0] + 0.5;
@@ -48,10 +51,13 @@ fn assert_readable(figure: &Figure, style: &FigureStyle) {
     }
 }
 
-/// The figure is no higher than a page, and a slide is one of 16 to 9.
-fn assert_fits(figure: &Figure, style: &FigureStyle) {
+/// The figure is readable and no higher than a page, and a slide is one of 16 to 9; its width, in millimetres. It is
+/// written once for all of this: pictures in it take long.
+fn assert_readable_on_a_page(figure: &Figure, style: &FigureStyle) -> f64 {
     let svg = figure.svg();
-    let ([wide, high], units) = size(&Document::parse(&svg).unwrap());
+    let svg = Document::parse(&svg).unwrap();
+    assert_texts_apart(figure, &svg, style);
+    let ([wide, high], units) = size(&svg);
     let (name, most) = (&figure.name, style.width.greatest_height());
     let high = high * 25.4 / 96.0;
     // A canvas counts in twentieths of a figure pixel.
@@ -59,6 +65,7 @@ fn assert_fits(figure: &Figure, style: &FigureStyle) {
     if style.width.has_fixed_height() {
         assert_eq!(9.0 * units[0], 16.0 * units[1], "{name}: {wide} by {high}");
     }
+    wide * 25.4 / 96.0
 }
 
 /// A sweep of which more is watched, measured and drawn than has room on a page.
@@ -109,8 +116,7 @@ fn what_has_no_room_on_a_page_stands_on_several() {
             "{width:?}"
         );
         for figure in &drawn {
-            assert_readable(figure, &style);
-            assert_fits(figure, &style);
+            assert_readable_on_a_page(figure, &style);
         }
         // Each page says which it is, and together they have every panel once.
         let pages: Vec<&Figure> = drawn
@@ -239,11 +245,8 @@ fn every_figure_reads_in_every_named_width() {
         };
         for result in [&bistable, &rayleigh] {
             for figure in drawn(result, &style) {
-                assert_readable(&figure, &style);
-                assert_fits(&figure, &style);
+                let given = assert_readable_on_a_page(&figure, &style);
                 if let Some(width) = width.millimetres() {
-                    let svg = figure.svg();
-                    let given = size(&Document::parse(&svg).unwrap()).0[0] * 25.4 / 96.0;
                     // A canvas counts in twentieths of a figure pixel.
                     assert!((given - width).abs() < 0.05, "{}: {given}", figure.name);
                 }

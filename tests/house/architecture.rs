@@ -14,10 +14,10 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("system", &["numerics", "formula"]),
     ("exponent", &["system"]),
     ("space", &["numerics"]),
-    ("sampling", &["cancellation", "system", "space"]),
+    ("sampling", &["numerics", "cancellation", "system", "space"]),
     ("monte_carlo", &["numerics", "cancellation", "system", "space", "sampling"]),
     ("density", &["numerics", "bytes", "system", "space"]),
-    ("generator", &["system", "space", "density"]),
+    ("generator", &["numerics", "system", "space", "density"]),
     ("stationary", &["numerics", "cancellation", "space", "sampling"]),
     ("passage", &["numerics", "cancellation", "system", "space", "density", "generator", "stationary"]),
     ("spectrum", &["numerics", "cancellation", "system", "space", "generator", "stationary"]),
@@ -30,7 +30,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("compare", &[
         "numerics", "cancellation", "system", "space", "sampling", "monte_carlo", "density", "continuation", "method"
     ]),
-    ("figure", &["formula", "system", "space", "density", "topology", "continuation", "compare"]),
+    ("figure", &["numerics", "formula", "system", "space", "density", "topology", "continuation", "compare"]),
     ("sweep_file", &[
         "numerics", "formula", "cancellation", "system", "exponent", "space", "sampling", "generator", "stationary", "density",
         "topology", "continuation", "method", "figure"

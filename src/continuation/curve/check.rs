@@ -11,6 +11,7 @@ use crate::continuation::grid::share_of_distance;
 use crate::continuation::locate::QUIET;
 use crate::continuation::{CheckedBy, DensitySource, Doubt, ErrorParts, SourceError, Want};
 use crate::density::LEAK_ALLOWANCE;
+use crate::numerics::{ends_of, sort_ascending};
 use crate::topology::two_sided_limit;
 
 /// A finer curve farther than this from the coarser one is not the same, in sides of the box.
@@ -151,7 +152,7 @@ impl Task<'_> {
         // In the order in which the path was walked, neighbours follow each other.
         let mut order: Vec<usize> = (0..selected.len()).collect();
         let reading = |place: usize| &walked.points[selected[place]].reading;
-        order.sort_by(|&a, &b| reading(a).coordinate.total_cmp(&reading(b).coordinate));
+        sort_ascending(&mut order, |&place| reading(place).coordinate);
         for place in order {
             let reading = reading(place);
             let value = reader.value(reading.coordinate, &reading.indicator.place);
@@ -291,10 +292,6 @@ fn place_moved(one: &WalkPoint, other: &WalkPoint) -> f64 {
 
 /// How far apart the numbers of a list are.
 fn spread(list: &[f64]) -> f64 {
-    let (low, high) = list
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &one| {
-            (low.min(one), high.max(one))
-        });
+    let (low, high) = ends_of(list.iter().copied());
     (high - low).max(0.0)
 }

@@ -32,8 +32,8 @@ mod states;
 mod trace;
 
 pub use found::{MapNode, MapWork, RegimeMap, RegionSample, Untraced, UntracedChange};
-pub(crate) use regions::{FloodedRegion, Seed, flood};
 pub use regions::{Region, RegionPicture};
+pub(crate) use regions::{Seed, flood};
 pub(crate) use shards::{MapChange, MapShard};
 pub(crate) use states::{PlaneState, plane_states};
 

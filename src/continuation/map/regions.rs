@@ -5,6 +5,7 @@ use std::collections::BinaryHeap;
 
 use super::found::{MapNode, RegimeMap};
 use crate::continuation::curve::distance;
+use crate::numerics::sort_descending;
 use crate::topology::Signature;
 
 /// Nodes nearer to a curve than this share of the distance between coarse nodes tell nothing of its sides: features are
@@ -159,7 +160,7 @@ pub(crate) fn flood(
         }
     }
     let mut order: Vec<usize> = (0..count).collect();
-    order.sort_by(|&a, &b| regions[b].share.total_cmp(&regions[a].share));
+    sort_descending(&mut order, |&place| regions[place].share);
     let mut place = vec![0; count];
     (order.iter().enumerate()).for_each(|(new, &old)| place[old] = new);
     pixels.iter_mut().for_each(|pixel| *pixel = place[*pixel]);

@@ -1,9 +1,9 @@
 //! What the page edits: the sweep file as it was typed, or one of the gallery, and the system that it makes.
 
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
+use serde_json::json;
 
 use super::{Live, Stop, answer, read};
-use crate::cancellation::Cancellation;
 use crate::explore::ExploreError;
 use crate::sweep_file::{Sweep, SweepFile, starting_files};
 
@@ -18,21 +18,6 @@ struct AskEdit {
     ticket: u64,
     /// The sweep file.
     text: String,
-}
-
-#[derive(Debug, Serialize)]
-struct Edited {
-    ticket: u64,
-    /// Where its page is, below the address that the server printed.
-    folder: String,
-}
-
-/// A sweep file to start from.
-#[derive(Debug, Serialize)]
-struct StartingText {
-    name: &'static str,
-    title: &'static str,
-    text: &'static str,
 }
 
 impl Live {
@@ -55,11 +40,7 @@ impl Live {
     ) -> Vec<u8> {
         answer(|| {
             let ask: AskEdit = read(body)?;
-            let lane = self.lanes.enter(&ask.lane, ask.ticket).ok_or(Stop::Stale)?;
-            let cancellation = Cancellation::new();
-            if !lane.begin(&cancellation) {
-                return Err(Stop::Stale);
-            }
+            let (lane, cancellation) = self.begin(&ask.lane, ask.ticket)?;
             let settings = SweepFile::parse(NAME, &ask.text).validate();
             let sweep = settings.and_then(|settings| settings.prepare(&cancellation));
             if cancellation.is_cancelled() {
@@ -68,22 +49,19 @@ impl Live {
             lane.end();
             let sweep = sweep.map_err(|report| Stop::Refused(report.render(false)))?;
             let folder = keep(Self::new(&sweep));
-            Ok(Edited {
-                ticket: ask.ticket,
-                folder: folder.map_err(|error| Stop::Refused(error.to_string()))?,
-            })
+            let folder = folder.map_err(|error| Stop::Refused(error.to_string()))?;
+            // Where its page is, below the address that the server printed.
+            Ok(json!({ "ticket": ask.ticket, "folder": folder }))
         })
     }
 
     /// The sweep files to start from.
     pub(in crate::explore) fn starts(&self, _body: &[u8]) -> Vec<u8> {
         answer(|| {
-            let start = |file: &crate::sweep_file::StartingFile| StartingText {
-                name: file.name,
-                title: file.title(),
-                text: file.text,
-            };
-            Ok(starting_files().iter().map(start).collect::<Vec<_>>())
+            let files = starting_files().iter();
+            let told = files
+                .map(|file| json!({ "name": file.name, "title": file.title(), "text": file.text }));
+            Ok(told.collect())
         })
     }
 }

@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde::Serialize;
+use serde_json::json;
 
 use super::ask::{AskMap, AskMapProgress};
 use super::{Live, Stop, answer, read};
 use crate::cancellation::Cancellation;
 use crate::continuation::SourceError;
 use crate::continuation::map::MapProgress;
-use crate::explore::plane::{PlaneFound, PlaneScene};
+use crate::explore::plane::PlaneScene;
 
 /// How far the maps in the making are, by their lanes.
 #[derive(Debug, Default)]
@@ -87,7 +88,7 @@ impl Live {
                 &map.nodes,
                 (&map.curves, &map.levels, "start"),
             );
-            Ok::<Option<PlaneFound>, Stop>(plane.found)
+            Ok(plane.found)
         })
     }
 
@@ -95,7 +96,8 @@ impl Live {
     pub(in crate::explore) fn map_progress(&self, body: &[u8]) -> Vec<u8> {
         answer(|| {
             let ask: AskMapProgress = read(body)?;
-            Ok::<Option<MappingState>, Stop>(self.mapping.lock().get(&ask.lane).copied())
+            let state = self.mapping.lock().get(&ask.lane).copied();
+            Ok(json!(state))
         })
     }
 }

@@ -18,14 +18,15 @@ use std::time::Instant;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use super::ExploreError;
-use super::frame::{Frame, band};
+use super::compose::edges;
+use super::frame::{band, frame};
 use super::html;
 use super::pack::deflate;
 use super::plane::PlaneScene;
-use super::scene::{Label, Scene};
+use super::scene::{label, scene};
 use crate::cancellation::Cancellation;
 use crate::continuation::{Point, SourceError};
 use crate::density::{EstimatedDensity, Observable};
@@ -54,61 +55,10 @@ impl std::fmt::Debug for Live {
     }
 }
 
-/// What a request comes to, as JSON. That a value is refused or a request stale is an answer like others: browsers
-/// write failures into their consoles.
-#[derive(Debug, Serialize)]
-#[serde(rename_all = "lowercase")]
-enum Answer<T> {
-    /// What was asked for.
-    Done(T),
-    /// Why not, for people.
-    Refused(String),
-    /// A newer request has taken its place.
-    Stale(bool),
-}
-
 /// Why there is no answer.
 enum Stop {
     Refused(String),
     Stale,
-}
-
-#[derive(Debug, Serialize)]
-struct LivePage<'a> {
-    live: bool,
-    /// The sweep file that its editor begins with.
-    typed: String,
-    /// Axes of a state.
-    dimension: usize,
-    #[serde(flatten)]
-    scene: &'a Scene,
-    plane: Option<PlaneScene>,
-    frames: [(); 0],
-    arrays: Vec<PackedArray>,
-}
-
-#[derive(Debug, Serialize)]
-struct SolveAnswer {
-    ticket: u64,
-    frame: Frame,
-    arrays: Vec<PackedArray>,
-    milliseconds: f64,
-}
-
-/// The cells of a watched density, with its values and band as little-endian doubles in base64; `None` where they were
-/// not asked for.
-#[derive(Debug, Serialize)]
-struct PackedArray {
-    edges: Vec<Vec<f64>>,
-    values: Option<String>,
-    band: Option<String>,
-    band_is: Option<&'static str>,
-}
-
-#[derive(Debug, Serialize)]
-struct Located {
-    ticket: u64,
-    labels: Vec<Label>,
 }
 
 impl Live {
@@ -126,26 +76,19 @@ impl Live {
     /// The page that asks this.
     pub(super) fn page(&self) -> Result<String, ExploreError> {
         let sweep = self.base.sweep();
-        let edges = |&observable: &Observable| {
-            let axes = sweep.problem.axes_of(observable).into_iter();
-            axes.map(|axis| axis.edges().to_vec()).collect()
-        };
-        let told = LivePage {
-            live: true,
-            typed: Self::typed(sweep),
-            dimension: sweep.problem.space().dimension(),
-            scene: &Scene::new(sweep, &[]),
-            plane: PlaneScene::new(sweep),
-            frames: [],
-            arrays: (sweep.problem.observables().iter())
-                .map(|observable| PackedArray {
-                    edges: edges(observable),
-                    values: None,
-                    band: None,
-                    band_is: None,
-                })
-                .collect(),
-        };
+        let arrays = sweep.problem.observables().iter().map(|&observable| {
+            let axes = sweep.problem.axes_of(observable);
+            let edges = edges(&axes);
+            json!({ "edges": edges, "values": null, "band": null, "band_is": null })
+        });
+        let mut told = scene(sweep, &[], &[]);
+        told["live"] = json!(true);
+        // The sweep file that its editor begins with.
+        told["typed"] = json!(Self::typed(sweep));
+        told["dimension"] = json!(sweep.problem.space().dimension());
+        told["plane"] = PlaneScene::new(sweep).map_or(Value::Null, |plane| plane.told());
+        told["frames"] = json!([]);
+        told["arrays"] = arrays.collect();
         let told = deflate(&serde_json::to_vec(&told)?);
         Ok(html::page(&sweep.settings.title, &told, &[], true))
     }
@@ -175,17 +118,27 @@ impl Live {
             drop(sessions);
             lane.end();
             let point = self.detected(point, bound.value, clock);
-            let grids = point
-                .densities
-                .iter()
-                .map(|density| grid(density, ask.marginals_only));
-            Ok(SolveAnswer {
-                ticket: ask.ticket,
-                arrays: grids.collect(),
-                frame: Frame::new(&point, &bound.sweep.settings.family),
-                milliseconds: 1e3 * clock.elapsed().as_secs_f64(),
-            })
+            let densities = point.densities.iter();
+            let grids = densities.map(|density| grid(density, ask.marginals_only));
+            Ok(json!({
+                "ticket": ask.ticket,
+                "frame": frame(&point, &bound.sweep.settings.family),
+                "arrays": grids.collect::<Vec<_>>(),
+                "milliseconds": 1e3 * clock.elapsed().as_secs_f64(),
+            }))
         })
+    }
+
+    /// Takes a place in a lane, with what stops the work that begins.
+    fn begin<'l>(
+        &'l self,
+        lane: &'l str,
+        ticket: u64,
+    ) -> Result<(lanes::Slot<'l>, Cancellation), Stop> {
+        let slot = self.lanes.enter(lane, ticket).ok_or(Stop::Stale)?;
+        let cancellation = Cancellation::new();
+        let has_begun = slot.begin(&cancellation);
+        has_begun.then_some((slot, cancellation)).ok_or(Stop::Stale)
     }
 
     fn detected(
@@ -205,11 +158,7 @@ impl Live {
         answer(|| {
             let ask: AskLocate = read(body)?;
             let sweep = self.base.between(&ask).map_err(Stop::Refused)?;
-            let lane = self.lanes.enter(&ask.lane, ask.ticket).ok_or(Stop::Stale)?;
-            let cancellation = Cancellation::new();
-            if !lane.begin(&cancellation) {
-                return Err(Stop::Stale);
-            }
+            let (lane, cancellation) = self.begin(&ask.lane, ask.ticket)?;
             let result = sweep
                 .run(&cancellation, &mut ())
                 .map_err(|error: SolveError| {
@@ -225,12 +174,8 @@ impl Live {
             lane.end();
             let labels = result.labels.iter();
             let changes = labels.filter(|row| row.bifurcation().is_some());
-            Ok(Located {
-                ticket: ask.ticket,
-                labels: changes
-                    .map(|row| Label::new(row, &result.subject))
-                    .collect(),
-            })
+            let changes = changes.map(|row| label(row, &result.subject));
+            Ok(json!({ "ticket": ask.ticket, "labels": changes.collect::<Vec<_>>() }))
         })
     }
 
@@ -238,7 +183,8 @@ impl Live {
     pub(super) fn sweep_file(&self, body: &[u8]) -> Vec<u8> {
         answer(|| {
             let ask: AskSweepFile = read(body)?;
-            self.base.sweep_file(&ask.values).map_err(Stop::Refused)
+            let text = self.base.sweep_file(&ask.values).map_err(Stop::Refused)?;
+            Ok(text.into())
         })
     }
 }
@@ -246,33 +192,35 @@ impl Live {
 /// What a request is told when the program itself is at fault.
 const FAULT: &str = "the program met an error of its own at these values, which its terminal shows; other values can go on being asked for";
 
-/// The answer to a request. A panic is one too: it ends neither the server nor other requests. What it may leave behind
-/// is not used again: a session is kept only after a solve that came back.
-fn answer<T: Serialize>(make: impl FnOnce() -> Result<T, Stop>) -> Vec<u8> {
-    let made = catch_unwind(AssertUnwindSafe(make));
-    let answer = match made {
-        Ok(Ok(done)) => Answer::Done(done),
-        Ok(Err(Stop::Refused(reason))) => Answer::Refused(reason),
-        Ok(Err(Stop::Stale)) => Answer::Stale(true),
-        Err(_) => Answer::Refused(FAULT.to_owned()),
+/// The answer to a request, as JSON: what was asked for, why not, for people, or that a newer request has taken its
+/// place. That a value is refused or a request stale is an answer like others: browsers write failures into their
+/// consoles. A panic is one too: it ends neither the server nor other requests. What it may leave behind is not used
+/// again: a session is kept only after a solve that came back.
+fn answer(make: impl FnOnce() -> Result<Value, Stop>) -> Vec<u8> {
+    let answer = match catch_unwind(AssertUnwindSafe(make)) {
+        Ok(Ok(done)) => json!({ "done": done }),
+        Ok(Err(Stop::Refused(reason))) => json!({ "refused": reason }),
+        Ok(Err(Stop::Stale)) => json!({ "stale": true }),
+        Err(_) => json!({ "refused": FAULT }),
     };
-    serde_json::to_vec(&answer).unwrap_or_default()
+    answer.to_string().into_bytes()
 }
 
 fn read<'b, T: serde::Deserialize<'b>>(body: &'b [u8]) -> Result<T, Stop> {
     serde_json::from_slice(body).map_err(|error| Stop::Refused(error.to_string()))
 }
 
-fn grid(estimated: &EstimatedDensity, marginals_only: bool) -> PackedArray {
+/// The cells of a watched density, with its values and band as little-endian doubles in base64; null where they were
+/// not asked for.
+fn grid(estimated: &EstimatedDensity, marginals_only: bool) -> Value {
     let is_marginal = matches!(estimated.observable, Observable::Marginal(_));
     let band = is_marginal.then(|| band(estimated)).flatten();
-    let edges = estimated.density.axes.iter();
-    PackedArray {
-        edges: edges.map(|axis| axis.edges().to_vec()).collect(),
-        values: (is_marginal || !marginals_only).then(|| doubles(&estimated.density.values)),
-        band_is: band.as_ref().map(|band| band.1),
-        band: band.map(|band| doubles(&band.0)),
-    }
+    json!({
+        "edges": edges(&estimated.density.axes),
+        "values": (is_marginal || !marginals_only).then(|| doubles(&estimated.density.values)),
+        "band": band.as_ref().map(|band| doubles(&band.0)),
+        "band_is": band.map(|band| band.1),
+    })
 }
 
 fn doubles(values: &[f64]) -> String {
@@ -290,12 +238,12 @@ mod tests {
     #[test]
     #[allow(clippy::panic)]
     fn a_panic_is_an_answer() {
-        let told: fn() -> Result<(), Stop> = || panic!("an error of the program");
+        let told: fn() -> Result<Value, Stop> = || panic!("an error of the program");
         let told = String::from_utf8(answer(told)).unwrap();
         assert!(
             told.starts_with("{\"refused\":\"the program met an error"),
             "{told}"
         );
-        assert_eq!(answer(|| Ok::<_, Stop>(7)), b"{\"done\":7}");
+        assert_eq!(answer(|| Ok(json!(7))), b"{\"done\":7}");
     }
 }

@@ -5,7 +5,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use super::ask::{AskPaths, Start};
 use super::bound::Bound;
@@ -32,26 +32,6 @@ const SEED: u64 = 1;
 #[derive(Debug, Default)]
 pub(super) struct Runs {
     kept: Mutex<Vec<(Vec<u64>, PathRun)>>,
-}
-
-#[derive(Debug, Serialize)]
-struct Followed {
-    ticket: u64,
-    /// Time that each path covers, unless it ran away.
-    time: f64,
-    time_step: f64,
-    steps: usize,
-    /// Coordinates of a state, which follow one another.
-    dimension: usize,
-    paths: Vec<FreePath>,
-}
-
-/// One path.
-#[derive(Debug, Serialize)]
-struct FreePath {
-    /// States as little-endian single-precision numbers in base64: finer than any screen.
-    states: String,
-    ran_away: bool,
 }
 
 impl Runs {
@@ -85,11 +65,7 @@ impl Live {
             let family = &bound.sweep.settings.family;
             let space = bound.sweep.problem.space();
             check(&ask, family, space).map_err(Stop::Refused)?;
-            let lane = self.lanes.enter(&ask.lane, ask.ticket).ok_or(Stop::Stale)?;
-            let cancellation = Cancellation::new();
-            if !lane.begin(&cancellation) {
-                return Err(Stop::Stale);
-            }
+            let (lane, cancellation) = self.begin(&ask.lane, ask.ticket)?;
             let system = family.at(bound.value);
             let system = system.map_err(|error| Stop::Refused(error.to_string()))?;
             let found = self.follow(&ask, &bound, &*system, &cancellation);
@@ -107,7 +83,7 @@ impl Live {
         bound: &Bound,
         system: &dyn System,
         cancellation: &Cancellation,
-    ) -> Result<Followed, MonteCarloError> {
+    ) -> Result<Value, MonteCarloError> {
         let space = bound.sweep.problem.space();
         let mut key = bound.key.clone();
         key.extend([bound.value.to_bits(), ask.turns.to_bits()]);
@@ -122,23 +98,24 @@ impl Live {
             }
         };
         let starts = ask.starts.par_iter();
-        let paths: Result<Vec<FreePath>, MonteCarloError> = starts
+        let paths: Result<Vec<Value>, MonteCarloError> = starts
             .map(|Start { state, seed }| {
                 let path = sample_path(system, space, state, *seed, &run, cancellation)?;
-                Ok(FreePath {
-                    states: singles(path.states.iter().flatten()),
-                    ran_away: path.ran_away,
-                })
+                // Single precision is finer than any screen.
+                let states = singles(path.states.iter().flatten());
+                Ok(json!({ "states": states, "ran_away": path.ran_away }))
             })
             .collect();
-        Ok(Followed {
-            ticket: ask.ticket,
-            time: run.time(),
-            time_step: run.time_step,
-            steps: run.steps,
-            dimension: space.dimension(),
-            paths: paths?,
-        })
+        Ok(json!({
+            "ticket": ask.ticket,
+            // The time that each path covers, unless it ran away.
+            "time": run.time(),
+            "time_step": run.time_step,
+            "steps": run.steps,
+            // Coordinates of a state, which follow one another.
+            "dimension": space.dimension(),
+            "paths": paths?,
+        }))
     }
 }
 

@@ -86,6 +86,13 @@ impl Scale {
     }
 }
 
+/// Draws the frame of a panel: its border, and both scales with labels and titles.
+pub(crate) fn around(page: &Page, rect: Rectangle, (across, up): (&Scale, &Scale)) {
+    border(page, rect);
+    across.draw_below(page, rect, true);
+    up.draw_left(page, rect, true);
+}
+
 /// Draws the border of a rectangle.
 pub(crate) fn border(page: &Page, rect: Rectangle) {
     let line = Stroke::solid(INK, FRAME_LINE);

@@ -2,6 +2,7 @@
 //! near, and a new one begins where none is.
 
 use super::contour::GridValues;
+use crate::numerics::sort_descending;
 
 /// Squares along each axis, each of which one line may enter.
 const SQUARES: usize = 26;
@@ -58,7 +59,7 @@ impl VectorGrid<'_> {
         let mut seeds: Vec<((f64, f64), f64)> = squares.map(|at| (at, size(at))).collect();
         seeds.retain(|seed| seed.1 > least && least > 0.0);
         // The strongest first; of equal ones the one that comes first.
-        seeds.sort_by(|one, other| other.1.total_cmp(&one.1));
+        sort_descending(&mut seeds, |one| one.1);
         let mut taken = vec![false; SQUARES * SQUARES];
         let mut lines = Vec::new();
         for (seed, _) in seeds {

@@ -128,9 +128,7 @@ impl Scene<'_> {
         self.stability.draw(&panel);
         self.levels.draw(&panel);
         self.crossed.draw(&panel);
-        frame::border(&page, rect);
-        across.draw_below(&page, rect, true);
-        up.draw_left(&page, rect, true);
+        frame::around(&page, rect, (&across, &up));
         self.draw_marks(&page, &panel, rect);
         legend.draw(&page, left + 0.5 * wide, below);
         page

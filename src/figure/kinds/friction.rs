@@ -9,6 +9,7 @@ use crate::figure::canvas::style::{INK, MARGIN, Stroke};
 use crate::figure::canvas::symbols;
 use crate::figure::parts::caption::{number, version};
 use crate::figure::print::{Figure, Print};
+use crate::numerics::ends_of;
 use crate::system::friction::pulled::{
     MOST_CYCLES, Pulled, closes, cycle, has_friction, steady_sliding, yielding_distance,
 };
@@ -221,9 +222,7 @@ fn sliding(system: &dyn System, fastest: f64) -> Vec<(f64, f64)> {
 
 /// The range of some values with room at its ends.
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-        (low.min(value), high.max(value))
-    });
+    let (low, high) = ends_of(values);
     let free = if high > low { FREE * (high - low) } else { 1.0 };
     (low - free, high + free)
 }

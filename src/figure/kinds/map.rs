@@ -159,9 +159,7 @@ impl Scene<'_> {
         self.levels.draw(&panel);
         self.crossed.draw(&panel);
         self.draw_ends(&page, &panel);
-        frame::border(&page, rect);
-        across.draw_below(&page, rect, true);
-        up.draw_left(&page, rect, true);
+        frame::around(&page, rect, (&across, &up));
         for placed in &places {
             placed.draw(&page, look);
         }

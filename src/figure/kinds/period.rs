@@ -9,6 +9,7 @@ use crate::figure::canvas::page::{Heading, Page, Rectangle, Shape};
 use crate::figure::canvas::style::{MARGIN, Stroke};
 use crate::figure::parts::{caption, names, table};
 use crate::figure::print::{Figure, Print};
+use crate::numerics::{ends_of, sort_ascending};
 
 /// Width and height of the panel, in pixels.
 const PANEL: (f64, f64) = (380.0, 210.0);
@@ -46,7 +47,7 @@ fn phases(result: &SweepResult, axis: usize) -> Vec<(f64, String)> {
     let all = result.subject.family.at_phases();
     let own = all.filter(|(at, _)| at.axis == axis);
     let mut own: Vec<(f64, String)> = own.map(|(at, name)| (at.phase, name.to_owned())).collect();
-    own.sort_by(|one, other| one.0.total_cmp(&other.0));
+    sort_ascending(&mut own, |one| one.0);
     own
 }
 
@@ -82,9 +83,7 @@ fn draw(result: &SweepResult, (axis, chosen): (usize, &[&Point]), print: &Print<
     let ends = ends.flat_map(|(_, [mean, deviation])| {
         [-1.0, 1.0].map(|sign| mean.0 + sign * (deviation.0 + deviation.1))
     });
-    let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), end| {
-        (low.min(end), high.max(end))
-    });
+    let (low, high) = ends_of(ends);
     if low >= high {
         return None;
     }
@@ -127,9 +126,7 @@ fn draw(result: &SweepResult, (axis, chosen): (usize, &[&Point]), print: &Print<
         let line: Vec<(f64, f64)> = means.collect();
         panel.draw(&line, Shape::Line(Stroke::curve(number)));
     }
-    frame::border(&page, rect);
-    across.draw_below(&page, rect, true);
-    up.draw_left(&page, rect, true);
+    frame::around(&page, rect, (&across, &up));
     let seen = format!(
         "Mean of {} over the period of the forcing{}, in a band of one standard deviation to either side, by straight lines between the {} phases that are watched.",
         names::axis(family, axis),

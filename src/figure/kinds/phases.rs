@@ -9,6 +9,7 @@ use crate::continuation::{Point, SweepResult};
 use crate::density::{Density, EstimatedDensity, Observable};
 use crate::figure::parts::{caption, names, table, view};
 use crate::figure::print::{Figure, Print};
+use crate::numerics::sort_ascending;
 
 /// Fewest phases that make a sheet.
 const FEWEST: usize = 2;
@@ -42,7 +43,7 @@ fn of_axis(result: &SweepResult, axis: usize) -> Vec<(usize, String)> {
         Observable::Joint(..) => None,
     });
     let mut found: Vec<(usize, f64, String)> = at_phase.collect();
-    found.sort_by(|one, other| one.1.total_cmp(&other.1));
+    sort_ascending(&mut found, |one| one.1);
     let found = found.into_iter();
     found.map(|(number, _, words)| (number, words)).collect()
 }

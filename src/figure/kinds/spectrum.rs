@@ -274,9 +274,7 @@ impl Chart {
         let page = Page::new(look, width, below + legend.height() + MARGIN);
         heading.draw(&page);
         draw_track(&page.panel(rect, range, up.range), &track, range, up.range);
-        frame::border(&page, rect);
-        across.draw_below(&page, rect, true);
-        up.draw_left(&page, rect, true);
+        frame::around(&page, rect, (&across, &up));
         legend.draw(&page, left + 0.5 * wide, below);
         let is_logarithmic = self.is_logarithmic;
         let rows = lines.iter().flat_map(|line| {

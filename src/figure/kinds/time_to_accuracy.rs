@@ -1,6 +1,7 @@
 //! Error against time: total variation to the reference over seconds, both logarithmic, a line a method.
 
 use crate::compare::{AccuracyPoint, Method, Reference};
+use crate::numerics::ends_of;
 
 use super::compared_marginals::caption_with;
 use super::compared_marginals::stroke;
@@ -36,9 +37,7 @@ fn exponent(value: f64) -> f64 {
 
 /// The ends of an axis of exponents.
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-        (low.min(value), high.max(value))
-    });
+    let (low, high) = ends_of(values);
     let missing = (0.5 * (LEAST - (high - low))).max(0.0);
     (low - missing - BORDER, high + missing + BORDER)
 }
@@ -121,9 +120,7 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
             panel.mark(&[at], legend::symbol(number, colour));
         }
     }
-    frame::border(&page, rect);
-    across.draw_below(&page, rect, true);
-    up.draw_left(&page, rect, true);
+    frame::around(&page, rect, (&across, &up));
     let seen = format!(
         "Total variation of {} at {} = {} to {reference}, over the seconds that each method took; bars are two standard errors, an arrow \
          says that zero is within them.",

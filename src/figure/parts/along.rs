@@ -5,6 +5,7 @@ use plotters_backend::text_anchor::HPos;
 
 use crate::continuation::{Point, SweepResult};
 use crate::density::Observable;
+use crate::numerics::ends_of;
 use crate::topology::Detection;
 
 use super::bifurcations::Labels;
@@ -187,9 +188,7 @@ fn write_title(
 /// First and last parameter value; widened if they are the same.
 pub(crate) fn parameter_range(points: &[Point]) -> (f64, f64) {
     let values = points.iter().map(|point| point.value);
-    let (from, to) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(from, to), value| {
-        (from.min(value), to.max(value))
-    });
+    let (from, to) = ends_of(values);
     if from < to {
         return (from, to);
     }

@@ -1,6 +1,7 @@
 //! Branches of peaks and valleys along a parameter: features of neighbouring points that belong together.
 
 use crate::continuation::Point;
+use crate::numerics::sort_ascending;
 use crate::topology::{Feature, FeatureKind, Verdict};
 
 /// Largest step of a branch between near points, as a share of the window; longer ones are jumps.
@@ -43,7 +44,7 @@ fn link(at: f64, candidates: &[f64], farthest: f64) -> Option<usize> {
         .enumerate()
         .map(|(index, &candidate)| ((candidate - at).abs(), index))
         .collect();
-    by_distance.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_ascending(&mut by_distance, |one| one.0);
     let &(distance, index) = by_distance.first()?;
     let clear = by_distance
         .get(1)

@@ -3,6 +3,7 @@
 use super::branches::{Branch, FARTHEST};
 use crate::continuation::{BifurcationStatus, Point, SweepResult};
 use crate::density::Observable;
+use crate::numerics::sort_ascending;
 use crate::topology::FeatureKind;
 
 /// Points by which a branch is drawn to where it meets another.
@@ -145,7 +146,7 @@ impl Around {
                 }
             }
         }
-        ends.sort_by(|a, b| a.place.1.total_cmp(&b.place.1));
+        sort_ascending(&mut ends, |one| one.place.1);
         ends
     }
 }
@@ -202,7 +203,7 @@ pub(crate) fn meet(
                 let branch = &mut branches[end.branch.0][end.branch.1];
                 let mut places = around.on_side(branch, end.is_below);
                 places.extend(way(end.place, end.before, (change, place)));
-                places.sort_by(|a, b| a.0.total_cmp(&b.0));
+                sort_ascending(&mut places, |one| one.0);
                 branch.places = places;
             }
             met.push(place);

@@ -60,9 +60,7 @@ pub(crate) fn at_value(name: &str, family: &Family, value: f64) -> String {
 
 /// Symbol of a parameter, swept or not.
 pub(crate) fn symbol_of(family: &Family, name: &str) -> String {
-    let mut parameters = family.model().parameters.iter();
-    let known = parameters.find(|parameter| parameter.name == name);
-    symbols::variable(known.map_or(name, |parameter| parameter.symbol.as_str()))
+    symbols::variable(family.symbol_of(name))
 }
 
 /// Whether a word names a figure: its whole name, the beginning of it up to a `_` (`joint` names `joint_xy_0.5`), or

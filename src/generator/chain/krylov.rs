@@ -4,6 +4,7 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::{Chain, solve::AbsorbingChain};
+use crate::numerics::sort_descending;
 
 /// A vector that is shorter than this beside the others, relative to its length before, adds nothing.
 const NOTHING: f64 = 1e-10;
@@ -114,7 +115,7 @@ impl Krylov {
         let mut order: Vec<usize> = (0..size)
             .filter(|&one| eigen.eigenvalues[one] > 0.0)
             .collect();
-        order.sort_by(|&one, &other| eigen.eigenvalues[other].total_cmp(&eigen.eigenvalues[one]));
+        sort_descending(&mut order, |&place| eigen.eigenvalues[place]);
         let function = |&one: &usize| {
             let mut sum = vec![0.0; self.basis[0].len()];
             for (vector, weight) in self.basis.iter().zip(eigen.eigenvectors.column(one).iter()) {

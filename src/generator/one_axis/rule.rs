@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
+use crate::numerics::sort_ascending;
 use crate::system::{LANES, Lanes, System};
 
 /// Gauss-Legendre points on a panel.
@@ -53,7 +54,7 @@ fn gauss() -> ([f64; NODES], [f64; NODES]) {
     });
     let eigen = SymmetricEigen::new(matrix);
     let mut order: Vec<usize> = (0..NODES).collect();
-    order.sort_by(|&i, &j| eigen.eigenvalues[i].total_cmp(&eigen.eigenvalues[j]));
+    sort_ascending(&mut order, |&place| eigen.eigenvalues[place]);
     let (mut points, mut weights) = ([0.0; NODES], [0.0; NODES]);
     for (slot, index) in order.into_iter().enumerate() {
         points[slot] = 0.5 + 0.5 * eigen.eigenvalues[index];

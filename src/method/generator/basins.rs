@@ -2,6 +2,7 @@
 //! the crest of a ring.
 
 use crate::density::{EstimatedDensity, Observable};
+use crate::numerics::sort_ascending;
 use crate::system::{Basin, BasinOf, Model, PassageQuestion, PassageStart, Region};
 use crate::topology::{
     DetectOptions, Detection, Detector, Feature, FeatureKind, PersistenceDetector, Verdict, basin,
@@ -87,7 +88,7 @@ fn ends(
         let mut all: Vec<(f64, f64)> = present
             .filter_map(|feature| Some((*feature.position.first()?, error(feature, density))))
             .collect();
-        all.sort_by(|one, other| one.0.total_cmp(&other.0));
+        sort_ascending(&mut all, |one| one.0);
         all
     };
     let (peaks, valleys) = (places(FeatureKind::Peak), places(FeatureKind::Valley));

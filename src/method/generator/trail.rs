@@ -3,6 +3,7 @@
 //! A fine sweep moves along a smooth curve, so a polynomial through the last few points predicts the next one far
 //! better than their secant, and what is left for the solver is small.
 
+use crate::numerics::{add_scaled, sort_ascending};
 use std::sync::Arc;
 
 use super::relaxation::Relaxation;
@@ -72,7 +73,7 @@ impl Trail {
             |point: &&Arc<TrailPoint>| self.points.iter().any(|one| one.value == point.value);
         let mut more: Vec<&Arc<TrailPoint>> = newest.filter(|point| !is_known(point)).collect();
         let distance = |point: &TrailPoint| (point.value - value).abs();
-        more.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        sort_ascending(&mut more, |one| distance(one));
         let room = POINTS - self.points.len();
         let more: Vec<_> = more.into_iter().take(room).cloned().collect();
         self.points.extend(more);
@@ -144,7 +145,7 @@ impl Trail {
         part: impl Fn(&TrailPoint) -> &[f64],
     ) -> Option<Vec<f64>> {
         let mut nearest: Vec<&TrailPoint> = self.points.iter().map(AsRef::as_ref).collect();
-        nearest.sort_by(|a, b| (a.value - value).abs().total_cmp(&(b.value - value).abs()));
+        sort_ascending(&mut nearest, |one| (one.value - value).abs());
         let first = nearest.first()?;
         let mut sum = part(first).to_vec();
         let mut last = f64::INFINITY;
@@ -180,13 +181,6 @@ fn term<'a>(
         add_scaled(&mut sum, distances / spacing, part(point));
     }
     sum
-}
-
-/// y ← y + factor x.
-fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
-    for (slot, value) in y.iter_mut().zip(x) {
-        *slot += factor * value;
-    }
 }
 
 #[cfg(test)]

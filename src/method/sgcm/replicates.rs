@@ -5,16 +5,15 @@
 //! change is not small, or is not found so, the cell map of the samples that are left is solved like that of all
 //! samples.
 
-use rayon::prelude::*;
-
 use super::Correction;
 use super::slope_correction::solve_by;
 use super::source::{SampledPoint, SgcmSource};
 use crate::MAX_DIMENSION;
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::method::MethodError;
+use crate::numerics::in_parallel;
 use crate::sampling::{GROUPS_AT_ONCE, SampledTransitions};
-use crate::stationary::{Changed, Options, Outcome, SteadyState, without_groups};
+use crate::stationary::{Options, Outcome, SteadyState, without_groups};
 
 /// Mass that a group may move and its change still be taken to first order. What is of second order grows like its
 /// square: of changes that move 0.01 it is 3 %, cell by cell, and less of moments.
@@ -64,11 +63,9 @@ impl SgcmSource {
         let map = transitions.linearised(self.problem.space(), &full.mass, slopes, is_corrected);
         let firsts: Vec<usize> = (0..groups).step_by(GROUPS_AT_ONCE).collect();
         let escape = full.info.escape_per_step;
-        let changed: Result<Vec<Changed>, Cancelled> = firsts
-            .into_par_iter()
-            .map(|first| without_groups(&map, first, escape, cancellation))
-            .collect();
-        let changed = changed?;
+        let changed = in_parallel(firsts.len(), |number| {
+            without_groups(&map, firsts[number], escape, cancellation)
+        })?;
         found.applications = changed.iter().map(|changed| changed.applications).sum();
         let changes: Vec<Option<Vec<f64>>> = changed
             .into_iter()
@@ -81,15 +78,11 @@ impl SgcmSource {
             .map(|change| change.filter(is_small))
             .collect();
         found.solves = changes.iter().filter(|change| change.is_none()).count();
-        let masses: Result<Vec<Option<Vec<f64>>>, Cancelled> = changes
-            .into_par_iter()
-            .enumerate()
-            .map(|(group, change)| match change {
-                Some(change) => Ok(Some(changed_by(transitions, full, &change))),
-                None => self.solve_without(transitions, correction, full, group, cancellation),
-            })
-            .collect();
-        found.masses.extend(masses?.into_iter().flatten());
+        let masses = in_parallel(changes.len(), |group| match &changes[group] {
+            Some(change) => Ok(Some(changed_by(transitions, full, change))),
+            None => self.solve_without(transitions, correction, full, group, cancellation),
+        })?;
+        found.masses.extend(masses.into_iter().flatten());
         if found.masses.len() < 2 {
             found.masses.clear();
         }

@@ -5,7 +5,7 @@
 
 use super::passes::Seat;
 use crate::cancellation::{Cancellation, Cancelled};
-use crate::numerics::dot;
+use crate::numerics::{add_scaled, dot};
 use crate::stationary::hessenberg::Triangle;
 
 /// What a run of GMRES gave.
@@ -29,12 +29,6 @@ pub(super) struct Limits {
     pub(super) iterations: usize,
     /// Whether to stop as soon as the trend says that the limit will not do.
     pub(super) give_up_early: bool,
-}
-
-fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
-    for (slot, value) in y.iter_mut().zip(x) {
-        *slot += factor * value;
-    }
 }
 
 /// A linear operator A.

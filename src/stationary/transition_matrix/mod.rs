@@ -25,7 +25,7 @@ mod tests;
 use crate::cancellation::Cancellation;
 
 pub use classes::ClassShare;
-pub(crate) use first_order::{Changed, MOST_APPLICATIONS, without_groups};
+pub(crate) use first_order::{MOST_APPLICATIONS, without_groups};
 pub use second_eigenvalue::{SecondEigenvalue, second_eigenvalue};
 pub use solve::solve;
 

@@ -3,7 +3,7 @@
 use super::super::draft::{Draft, EndKind};
 use super::super::names::nearest_name;
 use super::super::value::Plain;
-use super::in_file::Formulas;
+use super::in_file::InFile;
 
 /// Getter and setter of a key. The second argument is the name that `<…>` stands for in the key's path.
 #[derive(Debug, Clone, Copy)]
@@ -15,14 +15,14 @@ pub(in crate::sweep_file) struct Field {
 }
 
 /// The entry of a name.
-pub(super) fn entry_of<T: Formulas>(entries: &[(String, T)], name: &str) -> Option<Plain> {
+pub(super) fn entry_of<T: InFile>(entries: &[(String, T)], name: &str) -> Option<Plain> {
     let entry = entries.iter().find(|(known, _)| known == name)?;
-    Some(entry.1.written())
+    Some(entry.1.to_plain())
 }
 
 /// Takes the entry of a name.
-pub(super) fn set_entry<T: Formulas>(entries: &mut Vec<(String, T)>, name: &str, plain: &Plain) {
-    if let Some(value) = T::read(plain) {
+pub(super) fn set_entry<T: InFile>(entries: &mut Vec<(String, T)>, name: &str, plain: &Plain) {
+    if let Some(value) = T::from_plain(plain) {
         entries.retain(|(known, _)| known != name);
         entries.push((name.to_owned(), value));
     }
@@ -147,13 +147,13 @@ macro_rules! of_bins {
 pub(super) const UNTIL: Field = Field {
     get: |draft, name| {
         let passage = draft.passage(name)?;
-        let several = passage.exits.as_ref().map(Formulas::written);
-        several.or(passage.until.as_ref().map(Formulas::written))
+        let several = passage.exits.as_ref().map(InFile::to_plain);
+        several.or(passage.until.as_ref().map(InFile::to_plain))
     },
     set: |draft, name, plain| {
         let passage = draft.passage_mut(name);
         match plain.items() {
-            Some(_) => passage.exits = Vec::read(plain),
+            Some(_) => passage.exits = Vec::from_plain(plain),
             None => passage.until = plain.text().map(str::to_owned),
         }
     },

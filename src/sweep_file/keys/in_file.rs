@@ -25,8 +25,13 @@ impl InFile for String {
         Plain::Text(self.clone())
     }
 
+    /// A text, or a formula: one that is a number alone need not be quoted.
     fn from_plain(plain: &Plain) -> Option<Self> {
-        plain.text().map(str::to_owned)
+        match plain {
+            Plain::Text(text) => Some(text.clone()),
+            Plain::Integer(_) | Plain::Number(_) => Some(plain.to_toml()),
+            Plain::List(_) => None,
+        }
     }
 }
 
@@ -57,64 +62,6 @@ macro_rules! integers {
     )+};
 }
 integers!(usize, u64);
-
-/// The text of a formula; one that is a number alone need not be quoted.
-fn formula(plain: &Plain) -> Option<String> {
-    match plain {
-        Plain::Text(text) => Some(text.clone()),
-        Plain::Integer(_) | Plain::Number(_) => Some(plain.to_toml()),
-        Plain::List(_) => None,
-    }
-}
-
-/// What the file says of a name in one of its tables of formulas or numbers.
-pub(super) trait Formulas: Clone {
-    fn written(&self) -> Plain;
-    fn read(plain: &Plain) -> Option<Self>;
-}
-
-impl Formulas for String {
-    fn written(&self) -> Plain {
-        Plain::Text(self.clone())
-    }
-
-    fn read(plain: &Plain) -> Option<Self> {
-        formula(plain)
-    }
-}
-
-impl Formulas for f64 {
-    fn written(&self) -> Plain {
-        self.to_plain()
-    }
-
-    fn read(plain: &Plain) -> Option<Self> {
-        Self::from_plain(plain)
-    }
-}
-
-impl Formulas for Vec<String> {
-    fn written(&self) -> Plain {
-        Plain::List(self.iter().map(Formulas::written).collect())
-    }
-
-    fn read(plain: &Plain) -> Option<Self> {
-        match plain.items() {
-            Some(items) => items.iter().map(formula).collect(),
-            None => Some(vec![formula(plain)?]),
-        }
-    }
-}
-
-impl Formulas for [String; 2] {
-    fn written(&self) -> Plain {
-        Plain::List(self.iter().map(Formulas::written).collect())
-    }
-
-    fn read(plain: &Plain) -> Option<Self> {
-        Vec::read(plain)?.try_into().ok()
-    }
-}
 
 /// Booleans are words.
 pub(super) const SWITCH: [&str; 2] = ["on", "off"];
@@ -195,8 +142,12 @@ impl<T: InFile> InFile for Vec<T> {
         Plain::List(self.iter().map(T::to_plain).collect())
     }
 
+    /// A list, or what would be its only entry.
     fn from_plain(plain: &Plain) -> Option<Self> {
-        plain.items()?.iter().map(T::from_plain).collect()
+        match plain.items() {
+            Some(items) => items.iter().map(T::from_plain).collect(),
+            None => Some(vec![T::from_plain(plain)?]),
+        }
     }
 }
 

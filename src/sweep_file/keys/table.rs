@@ -17,7 +17,7 @@ use crate::method::{Correction, DerivedMeasure, Estimator};
 use crate::sampling::Integrator;
 use crate::space::MOST_MODES;
 use crate::stationary::Solver;
-use crate::sweep_file::draft::{ExponentKind, MethodKind};
+use crate::sweep_file::draft::{ACCURACY, ExponentKind, MethodKind};
 use crate::system::{ExponentMethod, FieldKind, Interpretation, NoiseKind, Sides};
 
 /// Most cells an axis may have: edges are stored, so a slip of the pen must not fill the memory.
@@ -106,7 +106,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "Longest step between points of a curve, as a share of the sides of the box."),
     key("curve.branches", Kind::Choice(switch), Rule("`on`"), optional!(curve.branches),
         "Whether the curves that start from points of codimension two are followed too."),
-    key("cells.accuracy", Kind::Number(OPEN_UNIT), OfOptions, always!(accuracy),
+    key("cells.accuracy", Kind::Number(OPEN_UNIT), OfSection(|| ACCURACY.to_string()), optional!(accuracy),
         "Wanted error of the watched densities, in total variation, where counts are left to the program."),
     key("cells.<axis>.range", Kind::Choice(automatic), Rule("`from` and `to`, `auto` without them"), of_axis!(range),
         "`auto` finds a range that holds the density all along the sweep by a few free trajectories; `from` and `to` are then left out, or one of them is given without `range`."),

@@ -41,7 +41,7 @@ impl Settings {
             axes: axes
                 .map(|(known, axis)| axis_draft(&known.name, axis))
                 .collect(),
-            accuracy: self.accuracy,
+            accuracy: Some(self.accuracy),
             method: self.method.clone(),
             marginals: Some(self.marginals()),
             joint: Some(self.joint()),

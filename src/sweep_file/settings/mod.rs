@@ -47,7 +47,7 @@ pub use quantities::BinSettings;
 pub(super) use quantities::quantity_name;
 
 use super::document::Document;
-use super::draft::MethodSettings;
+use super::draft::{ACCURACY, MethodSettings};
 use super::reader::Reader;
 use super::report::Report;
 use super::respell;
@@ -159,7 +159,7 @@ impl Settings {
             map: mapped,
             curve: followed,
             family,
-            accuracy: draft.accuracy,
+            accuracy: draft.accuracy.unwrap_or(ACCURACY),
             chosen: Vec::new(),
             axes,
             method: draft.method,

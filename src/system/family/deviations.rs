@@ -52,7 +52,7 @@ impl Family {
 
     /// The damped particle in a potential that the formulas are at a coordinate of the path; `None` where their form
     /// shows none.
-    pub fn particle_at(&self, coordinate: f64) -> Option<DampedParticle> {
+    pub(crate) fn particle_at(&self, coordinate: f64) -> Option<DampedParticle> {
         let values = self.values_at(coordinate).ok()?;
         self.model.formulas()?.particle(values.as_slice())
     }

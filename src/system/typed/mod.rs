@@ -27,11 +27,10 @@ use crate::formula::language::typeset_name;
 use compiled::Extras;
 
 pub(super) use compiled::Compiled;
-pub use compiled::CompiledDrift;
 pub(crate) use equations::FormulaHazard;
 pub use equations::TypedEquations;
 pub use error::{FormulaPlace, PeriodFault, TypedModelError};
-pub use particle::DampedParticle;
+pub(crate) use particle::DampedParticle;
 
 /// How a stochastic integral is read where the amplitude of a noise depends on the state that it drives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -270,7 +269,7 @@ impl TypedModel {
     ///
     /// # Errors
     /// Every name, equation, noise, definition and bound that is wrong; never empty.
-    pub fn build_or_all_errors(self) -> Result<Arc<Model>, Vec<TypedModelError>> {
+    pub(crate) fn build_or_all_errors(self) -> Result<Arc<Model>, Vec<TypedModelError>> {
         let (reading, found) = read::read(&self)?;
         let reading = Arc::new(reading);
         let statements = self.statements();

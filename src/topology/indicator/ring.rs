@@ -8,6 +8,7 @@
 use super::kind::Traits;
 use super::{Indicator, IndicatorKind};
 use crate::density::EstimatedDensity;
+use crate::numerics::ends_of;
 use crate::topology::field::{Field, Jet, Stencil};
 
 /// Rays from the point inside.
@@ -49,9 +50,7 @@ fn ring_slope(estimated: &EstimatedDensity, inside: &[f64]) -> Option<Indicator>
     let each = shoulders
         .iter()
         .map(|one| slope(one.fine.jet(values), one.direction));
-    let (low, high) = each.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), one| {
-        (low.min(one), high.max(one))
-    });
+    let (low, high) = ends_of(each);
     let mean = |of: &dyn Fn(&Shoulder) -> f64| shoulders.iter().map(of).sum::<f64>() / RAYS as f64;
     let mut indicator = Indicator::derive(
         estimated,

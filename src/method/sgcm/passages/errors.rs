@@ -10,7 +10,7 @@ use super::survival::Times;
 use crate::cancellation::Cancellation;
 use crate::continuation::PassageFault;
 use crate::method::MethodError;
-use crate::numerics::jackknife;
+use crate::numerics::{in_parallel, jackknife};
 use crate::passage::WithError;
 use crate::space::CellSpace;
 
@@ -68,16 +68,12 @@ pub(super) fn with_errors(
     let groups = (0..map.groups).map(|group| (Counted::Without(group), &cells));
     let variants = groups.chain([(Counted::Coarse, &cells), (Counted::All, &pairs)]);
     let variants: Vec<(Counted, &Layout)> = variants.collect();
-    let numbers = variants
-        .into_par_iter()
-        .with_max_len(1)
-        .map(|(counted, layout)| {
-            let operator = Operator::new(map, counted, layout, weights);
-            let functions = Functions::new(&operator, asked, cancellation)?;
-            Ok(functions.numbers(&operator, &operator.start, times).0)
-        });
-    let numbers: Result<Vec<Vec<f64>>, MethodError> = numbers.collect();
-    let numbers = numbers?;
+    let numbers = in_parallel(variants.len(), |number| {
+        let (counted, layout) = variants[number];
+        let operator = Operator::new(map, counted, layout, weights);
+        let functions = Functions::new(&operator, asked, cancellation)?;
+        Ok::<_, MethodError>(functions.numbers(&operator, &operator.start, times).0)
+    })?;
     let (without, both) = numbers.split_at(map.groups);
     let starts: Vec<Vec<f64>> = (others.par_iter())
         .map(|weights| {

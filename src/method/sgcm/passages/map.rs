@@ -1,11 +1,10 @@
 //! The cell map of paths until they enter a region: sampled from every cell that is reached from the start.
 
-use rayon::prelude::*;
-
 use super::moments::{Asked, Basis, Collector, Moments, basis};
 use crate::MAX_DIMENSION;
 use crate::method::MethodError;
 use crate::monte_carlo::{CellPath, CellPaths, PathEnd, PathsFrom};
+use crate::numerics::in_parallel;
 use crate::space::CellSpace;
 
 /// What the paths of a cell do.
@@ -95,11 +94,11 @@ impl Sampler<'_> {
             if frontier.is_empty() {
                 break;
             }
-            let sample =
-                |&cell: &usize| Ok((cell, self.column(self.paths, PathsFrom::Cell(cell))?));
-            let sampled: Result<Vec<(usize, Sampled)>, MethodError> =
-                frontier.par_iter().with_max_len(1).map(sample).collect();
-            let sampled = sampled?;
+            let sampled = in_parallel(frontier.len(), |number| {
+                let cell = frontier[number];
+                let column = self.column(self.paths, PathsFrom::Cell(cell))?;
+                Ok::<_, MethodError>((cell, column))
+            })?;
             frontier = sampled
                 .iter()
                 .flat_map(|(_, one)| reached(&one.all))
