@@ -11,7 +11,7 @@ use crate::continuation::BifurcationStatus;
 use crate::continuation::curve::Curve;
 use crate::continuation::map::{MapShard, RegimeMap, UntracedChange};
 use crate::job::{Done, Job, MapJob, MapShardJob, Outcome};
-use crate::run::format_with_error;
+use crate::run::{format_with_error, warnings_of_nodes};
 
 /// Columns and rows of the picture that shares of regions are counted in.
 const PICTURE: [usize; 2] = [300, 300];
@@ -30,6 +30,10 @@ impl Printed for MapJob<'_> {
     fn complete(&self, _: &Path) -> Result<(String, Outcome), CommandError> {
         let text = "the map is complete: there is nothing to go on with\n";
         Ok((text.to_owned(), Outcome::Complete))
+    }
+
+    fn warnings(&self, found: &RegimeMap) -> Vec<String> {
+        warnings_of_nodes(found)
     }
 }
 

@@ -4,6 +4,8 @@
 //! read it. Its code and its axis are its kind: findings of one kind at several points are told once.
 
 mod parts;
+#[cfg(feature = "serde")]
+pub(crate) mod stored;
 
 /// Share of a density's mass that may be negative where its shape is to be believed. What is negative must be positive
 /// elsewhere, so that wiggles of this size hold as much mass as a small peak does.

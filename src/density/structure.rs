@@ -18,6 +18,26 @@ pub struct Structure {
     /// Whether masses of cells are spread over bins of a formula, or carried to and fro by a periodic forcing: what
     /// that does to bins has no order in the cells, and differs from bin to bin, so that two grids may agree by chance.
     pub is_spread: bool,
+    /// Of each axis whether its lower and its upper end are the system's own, as walls are, and the least value of a
+    /// formula: nothing where none is, or none is known. Another end is only where somebody stopped looking.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub own_ends: Vec<[bool; 2]>,
+}
+
+impl Structure {
+    /// The same with ends of axes that are the system's own.
+    pub(crate) fn with_own_ends(self, ends: impl Iterator<Item = [bool; 2]>) -> Self {
+        let ends: Vec<[bool; 2]> = ends.collect();
+        let has_any = ends.iter().flatten().any(|is_own| *is_own);
+        let own_ends = if has_any { ends } else { Vec::new() };
+        Self { own_ends, ..self }
+    }
+
+    /// Whether an end of an axis is known to be the system's own.
+    pub(crate) fn is_own_end(&self, axis: usize, is_upper: bool) -> bool {
+        let ends = self.own_ends.get(axis);
+        ends.is_some_and(|ends| ends[usize::from(is_upper)])
+    }
 }
 
 /// A plane on which the derivative of the density jumps, or bends: drift or noise across it does, or a force along it

@@ -220,6 +220,7 @@ pub(super) fn nodes_of(states: &[PlaneState]) -> Vec<MapNode> {
         is_seen: true,
         reason: None,
         numbers: Vec::new(),
+        findings: state.point.report.findings.clone(),
     };
     states.iter().map(node).collect()
 }

@@ -60,6 +60,8 @@ pub(super) struct AxisGeometry {
     pub(super) ends: [End; 2],
     /// One a face, ends included (theirs are empty).
     pub(super) stencils: Vec<FaceStencil>,
+    /// Whether fluxes beside a wall depend on the scheme in their derivatives too.
+    pub(super) has_wall_stencils: bool,
     /// Cells on either side that an entry of the matrix may reach.
     pub(super) reach: usize,
     /// Inner faces on which a derivative of the density jumps, past which no stencil of a flux reaches.
@@ -95,6 +97,23 @@ impl AxisGeometry {
         let is_across = |face: usize| kinks.iter().any(|kink| kink.abs_diff(face) < REACH);
         let end = |wall: bool| if wall { End::Wall } else { End::Open };
         let ranges = space.ranges();
+        let mut stencils: Vec<FaceStencil> = (0..=count)
+            .map(|face| stencil(scheme, damping, (face, count), &breaks))
+            .collect();
+        let walls = reflecting_walls(system, index, axis);
+        for (is_wall, face) in walls.into_iter().zip([1, count.saturating_sub(1)]) {
+            let is_smooth = count >= 2 * REACH && !is_across(face);
+            if let Some(found) = scheme.beside_wall().filter(|_| is_wall && is_smooth) {
+                let found = if face == 1 { found } else { found.mirrored() };
+                stencils[face] = FaceStencil {
+                    central: found.central,
+                    dissipation: found.dissipation.map(|weight| damping * weight),
+                    derivative: found.derivative,
+                    // The flux through the wall itself is nothing.
+                    corrected: true,
+                };
+            }
+        }
         Self {
             nodes: axis.nodes().to_vec(),
             widths: (0..count).map(|cell| axis.node_stretch(cell)).collect(),
@@ -102,9 +121,8 @@ impl AxisGeometry {
             inner_offsets: (0..count).map(|cell| inner_offsets(axis, cell)).collect(),
             face_widths: (0..=count).map(|face| axis.edge_stretch(face)).collect(),
             ends: closed_ends(system, index, &ranges).map(end),
-            stencils: (0..=count)
-                .map(|face| stencil(scheme, damping, (face, count), &breaks))
-                .collect(),
+            stencils,
+            has_wall_stencils: walls.contains(&true),
             reach: match (axis.is_modes(), noisy) {
                 (true, _) => count - 1,
                 (false, true) => REACH,
@@ -144,6 +162,17 @@ impl AxisGeometry {
     pub(super) fn count(&self) -> usize {
         self.nodes.len()
     }
+}
+
+/// Which ends of an axis of cells are walls that reflect what noise drives against them.
+fn reflecting_walls(system: &dyn System, index: usize, axis: &Axis) -> [bool; 2] {
+    let facts = system.facts();
+    let at = facts.reflecting.get(&index);
+    let at = at.filter(|_| system.is_noisy(index) && !axis.is_modes());
+    at.map_or([false; 2], |(low, high)| {
+        let [lower, upper] = facts.walls(index, (axis.from(), axis.to()));
+        [lower && low.is_finite(), upper && high.is_finite()]
+    })
 }
 
 /// The four quadrature points of a cell, ascending: two Gauss points in either half.

@@ -88,8 +88,11 @@ impl Line {
 
     /// Writes the weights of the flux toward larger coordinates through each face: `fluxes[face][k]` multiplies
     /// the unknown of cell `face + k - 3`. At an open end the flux is what leaves, never what comes in. The line has
-    /// been prepared with the same axis, or one of another advective scheme.
-    pub(super) fn fluxes(&self, axis: &AxisGeometry, fluxes: &mut [Window]) {
+    /// been prepared with the same axis, or one of another advective scheme; derivatives beside walls are the scheme's.
+    pub(super) fn fluxes(&mut self, axis: &AxisGeometry, fluxes: &mut [Window]) {
+        if self.is_noisy() && axis.has_wall_stencils {
+            self.gradients(axis);
+        }
         for (face, flux) in fluxes.iter_mut().enumerate() {
             *flux = self.advective(axis, face);
         }

@@ -18,6 +18,8 @@ pub(super) struct Maps {
     pub(super) averaged: Vec<AveragedMap>,
     /// The quantities that can be watched, in their order.
     pub(super) bound: Vec<BoundQuantity>,
+    /// Of each of them whether its bins end where its values do.
+    pub(super) own_ends: Vec<[bool; 2]>,
 }
 
 /// What turns masses into the moments of a quantity.

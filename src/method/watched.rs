@@ -13,7 +13,7 @@ use crate::density::{
     estimate_from_second, estimate_projected, half_difference, moments, phase_factors, times,
 };
 use crate::space::CellSpace;
-use crate::system::{BoundQuantity, LANES, SwitchingSurface, System, symmetry_over_a_period};
+use crate::system::{self, BoundQuantity, LANES, SwitchingSurface, System, symmetry_over_a_period};
 
 /// Whether masses carry noise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,9 +96,20 @@ impl Problem {
                 quantity,
             }
         });
+        // Where no state has values beyond the bins, these end where the formula does.
+        let own_ends = bound.iter().zip(self.bins()).map(|(quantity, bins)| {
+            let values = values_at_nodes(space, quantity);
+            let is_within =
+                |is_beyond: &dyn Fn(f64) -> bool| !values.iter().copied().any(is_beyond);
+            [
+                is_within(&|value| value < bins.from()),
+                is_within(&|value| value > bins.to()),
+            ]
+        });
         Ok(Maps {
             watched: watched?,
             averaged: averaged.collect(),
+            own_ends: own_ends.collect(),
             bound,
         })
     }
@@ -297,11 +308,17 @@ impl Maps {
                 ..structure(system, space, masses, observable, kinked, Moment::Mean)
             };
         }
+        let ranges = space.ranges();
+        let own_end = |&axis: &usize| match axis.checked_sub(space.dimension()) {
+            None => system::closed_ends(system, axis, &ranges),
+            Some(number) => self.own_ends.get(number).copied().unwrap_or_default(),
+        };
         Structure {
             centre: self.centre(system, problem, &axes, kinked),
             is_spread: true,
             ..Structure::default()
         }
+        .with_own_ends(axes.iter().map(own_end))
     }
 
     /// The point of symmetry of a density of quantities: where the system's reflection reflects each of them.

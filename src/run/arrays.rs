@@ -5,7 +5,7 @@
 //! | --- | --- | --- |
 //! | `f_c` (the parameter) | parameter | its values |
 //! | `x`, `x_edges` | cells of the axis, edges | centres and edges of the cells |
-//! | `p_x`, `p_xy` | parameter, axes … | density; attribute `centre_of_symmetry` where the system declares one, `formulas` of quantities |
+//! | `p_x`, `p_xy` | parameter, axes … | density; attribute `centre_of_symmetry` where the system declares one, `own_ends` where ends are the system's own, `formulas` of quantities |
 //! | `p_x_error` | as `p_x` | standard error, with what open ends of the ranges may have changed (generator) |
 //! | `p_x_second` | as `p_x` | density by a second discretisation (generator) |
 //! | `range_ends` | parameter, density, number | what the ends of the ranges may have changed of each density (generator) |
@@ -32,6 +32,9 @@ const REPLICATE: &str = "replicate";
 
 /// Attribute of a density.
 pub(super) const CENTRE: &str = "centre_of_symmetry";
+
+/// Attribute of a density: of each axis whether its ends are the system's own; none where no end is.
+pub(super) const OWN_ENDS: &str = "own_ends";
 
 /// Attribute of a density of quantities: their names and formulas.
 pub(super) const FORMULAS: &str = "formulas";
@@ -169,6 +172,11 @@ impl Layout {
         let layout = match formulas(family, estimate.observable) {
             Some(formulas) => layout.attribute(FORMULAS, formulas),
             None => layout,
+        };
+        let own_ends = &estimate.structure.own_ends;
+        let layout = match own_ends.is_empty() {
+            true => layout,
+            false => layout.attribute(OWN_ENDS, json!(own_ends)),
         };
         match &estimate.structure.centre {
             Some(centre) => layout.attribute(CENTRE, json!(centre)),

@@ -8,21 +8,32 @@ use crate::system::Family;
 /// Findings as one cell, joined by `;`: the code, with the name of the axis where it has one, then the numbers, each
 /// after a `:`. Sentences of an older run have no code: the column `warnings` has them.
 pub(super) fn findings_cell(family: &Family, findings: &[Finding]) -> String {
+    cell(family, findings, &|number| number)
+}
+
+/// The same with numbers of three digits: those of nodes of a map depend in the last ones on which neighbour was solved
+/// before.
+pub(super) fn rounded_findings_cell(family: &Family, findings: &[Finding]) -> String {
+    let rounded = |number: f64| format!("{number:.2e}").parse().unwrap_or(number);
+    cell(family, findings, &rounded)
+}
+
+fn cell(family: &Family, findings: &[Finding], digits: &dyn Fn(f64) -> f64) -> String {
     let coded = findings
         .iter()
         .filter(|one| !matches!(one, Finding::Told(_)));
-    let words: Vec<String> = coded.map(|finding| word(family, finding)).collect();
+    let words: Vec<String> = coded.map(|finding| word(family, finding, digits)).collect();
     words.join(";")
 }
 
-fn word(family: &Family, finding: &Finding) -> String {
+fn word(family: &Family, finding: &Finding, digits: &dyn Fn(f64) -> f64) -> String {
     let (code, axis, numbers) = finding.parts();
     let mut word = code.to_owned();
     if let Some(axis) = axis {
         word += "-";
         word += family.axis(axis);
     }
-    for number in numbers {
+    for number in numbers.into_iter().map(digits) {
         word += ":";
         // An estimate that has overflowed is not a number, and is told so.
         if number.is_finite() {

@@ -6,8 +6,10 @@ use super::RunError;
 use super::codimension::plane_files;
 use super::columns::{Columns, count, number, word};
 use super::curve::{levels_json, one_json, work_json};
+use super::findings::rounded_findings_cell;
 use super::number::format_number;
 use super::plane_file;
+use super::warnings::warnings_of_nodes;
 use crate::continuation::Subject;
 use crate::continuation::map::{MapNode, RegimeMap, UntracedChange};
 use crate::density::Observable;
@@ -52,6 +54,10 @@ pub(super) fn columns<'a>(
     columns.push(count("level", |node: &MapNode| node.level));
     columns.push(word("reason", |node: &MapNode| {
         node.reason.clone().unwrap_or_default()
+    }));
+    let owned = family.clone();
+    columns.push(word("findings", move |node: &MapNode| {
+        rounded_findings_cell(&owned, &node.findings)
     }));
     let mut known: Vec<&str> = Vec::new();
     for (index, asked) in family.questions.levels.iter().enumerate() {
@@ -150,6 +156,8 @@ fn map_json(map: &RegimeMap, sweep: &str, seconds: f64) -> Result<String, RunErr
             .map(|side| json!({ "parameter": side.parameter, "from": side.from, "to": side.to }))
             .collect::<Vec<_>>(),
         "nodes": map.nodes.len(),
+        "nodes_with_wide_cells": map.nodes.iter().filter(|node| node.has_wide_cells()).count(),
+        "warnings": warnings_of_nodes(map),
         "regions": regions.collect::<Vec<_>>(),
         "curves": curves.collect::<Vec<_>>(),
         "not_followed": untraced.collect::<Vec<_>>(),

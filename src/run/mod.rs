@@ -161,4 +161,4 @@ pub(crate) use staged::StagedRun;
 pub use stored_run::StoredRun;
 pub(crate) use summary::find_runs;
 pub use summary::{FoundRow, RunSummary};
-pub(crate) use warnings::{warnings_of_comparison, warnings_of_points};
+pub(crate) use warnings::{warnings_of_comparison, warnings_of_nodes, warnings_of_points};

@@ -45,6 +45,7 @@ struct Observed {
     closed: Option<StoredArray>,
     replicates: Option<StoredArray>,
     centre: Option<Vec<f64>>,
+    own_ends: Vec<[bool; 2]>,
     negligible: f64,
     kinks: Vec<StoredKink>,
 }
@@ -229,6 +230,7 @@ impl Observed {
             structure: Structure {
                 centre,
                 kinks,
+                own_ends: self.own_ends.clone(),
                 ..Structure::default()
             },
             negligible: self.negligible,

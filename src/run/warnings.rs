@@ -1,12 +1,15 @@
 //! Findings gathered for people: each kind once, with the parameter values it concerns.
 
-use super::{finding_in_words, format_number};
+use super::{finding_in_words, format_number, format_with_error};
 use crate::compare::{Comparison, Method};
+use crate::continuation::map::RegimeMap;
 use crate::continuation::{Finding, Point};
 use crate::system::Family;
 
 /// What rounding leaves of a value, as a share of the sweep.
 const ROUNDING: f64 = 1e-9;
+/// How exactly places of a map are told, as a share of the sides of its box.
+const NEAR: f64 = 1e-3;
 /// Digits after the first of values that are told.
 const DIGITS: usize = 8;
 
@@ -17,6 +20,51 @@ struct Gathered<'a> {
     values: (f64, f64),
     /// Number of parameter values.
     count: usize,
+}
+
+/// The warnings of the nodes of a map: each kind of finding once, in the numbers of its first node.
+pub(crate) fn warnings_of_nodes(map: &RegimeMap) -> Vec<String> {
+    let family = &map.subject.family;
+    let mut kinds: Vec<(&Finding, [f64; 2], usize)> = Vec::new();
+    for node in &map.nodes {
+        let mut own: Vec<&Finding> = Vec::new();
+        for finding in &node.findings {
+            if own.iter().all(|one| one.kind() != finding.kind()) {
+                own.push(finding);
+            }
+        }
+        for finding in own {
+            match (kinds.iter_mut()).find(|(known, ..)| known.kind() == finding.kind()) {
+                Some((.., count)) => *count += 1,
+                None => kinds.push((finding, node.values, 1)),
+            }
+        }
+    }
+    let sides = map.plane.sides();
+    let sentence = |(finding, values, count): &(&Finding, [f64; 2], usize)| {
+        let place = [0, 1].map(|k| {
+            let side = &sides[k];
+            let value = format_with_error(values[k], NEAR * side.length()).0;
+            format!("{} = {value}", side.parameter)
+        });
+        let words = finding_in_words(family, finding);
+        let more = match count - 1 {
+            0 => String::new(),
+            1 => " (and the like at 1 more node)".to_owned(),
+            more => format!(" (and the like at {more} more nodes)"),
+        };
+        format!("{}: {words}{more}", place.join(", "))
+    };
+    let mut told: Vec<String> = kinds.iter().map(sentence).collect();
+    let wide = map.nodes.iter().filter(|node| node.has_wide_cells());
+    let wide = wide.count();
+    if wide > 0 {
+        let nodes = map.nodes.len();
+        told.push(format!(
+            "at {wide} of {nodes} nodes the cells are too wide to count by: signatures there may be wrong"
+        ));
+    }
+    told
 }
 
 /// The warnings of all points: each kind of finding once, in the numbers of its first.

@@ -25,6 +25,8 @@ const CERTAIN: f64 = 0.3;
 const ONE_ERROR: f64 = 4.0;
 /// A step that is a smaller share of a cell ends the search.
 const SETTLED: f64 = 1e-6;
+/// Root of the sum of the squares of the weights of a slope in the middle of eight even cells, in inverse widths.
+const CENTRAL: f64 = 2.029;
 /// Times its error that a slope may be where it is none.
 const UNCERTAIN: f64 = 3.0;
 /// Share of a height by which the density may change over a cell where the search has ended.
@@ -38,6 +40,8 @@ pub(super) struct Critical {
     /// Value and derivatives there.
     pub(super) jet: Jet,
     /// Whether it lies on a plane with a jump of the derivative, or at an end of the range, one value an axis.
+    held: Vec<bool>,
+    /// The same, or in an outermost cell.
     pinned: Vec<bool>,
     /// Whether it lies at an end of a range, toward which the density rises.
     pub(super) is_at_end: bool,
@@ -99,6 +103,7 @@ impl Critical {
         }
         let fine = field.stencil(&position, 0)?;
         let (mut cell, mut width) = ([0.0; 2], [0.0; 2]);
+        let held = pinned.clone();
         let mut pinned = pinned;
         for (k, axis) in field.axes().iter().enumerate() {
             cell[k] = field.cell_width(k, centre[k]);
@@ -115,6 +120,7 @@ impl Critical {
             rough: field.stencil(&position, 1)?,
             fine,
             position,
+            held,
             pinned,
         })
     }
@@ -177,9 +183,9 @@ impl Critical {
         let change = [0, 1].map(|k| rough[k] - self.jet.first[k]);
         let slopes = [0, 1].map(|k| match self.cell[k] {
             0.0 => 0.0,
-            width => error / (std::f64::consts::SQRT_2 * width),
+            width => self.one_sided(k) * error / (std::f64::consts::SQRT_2 * width),
         });
-        let free = |k: usize| !self.pinned.get(k).copied().unwrap_or(true);
+        let free = |k: usize| !self.held.get(k).copied().unwrap_or(true);
         let principal = match [free(0), free(1)] {
             [true, true] => self.jet.principal().to_vec(),
             one => (0..2).filter(|&k| one[k]).map(|k| self.along(k)).collect(),
@@ -202,6 +208,32 @@ impl Critical {
             }
         }
         moved
+    }
+
+    /// How many times as much the slope makes of errors of cells where the polynomial has nearly all of its cells on
+    /// one side, in an outermost cell, as elsewhere.
+    fn one_sided(&self, k: usize) -> f64 {
+        let [held, pinned] = [&self.held, &self.pinned].map(|all| all.get(k).copied());
+        match (held, pinned) {
+            (Some(false), Some(true)) => {
+                (self.fine.slope_weight(k) * self.width[k] / CENTRAL).max(1.0)
+            }
+            _ => 1.0,
+        }
+    }
+
+    /// How far beyond an end of an axis that is not the system's own the density may go on rising: up to where the
+    /// parabola of its logarithm at the end does. At least by a cell, and at most by as much as the range is long.
+    pub(super) fn beyond_end(&self, field: &Field<'_>, k: usize) -> f64 {
+        let axis = &field.axes()[k];
+        let length = axis.to() - axis.from();
+        let rate = self.jet.first[k].abs() / self.jet.value;
+        let bend = self.jet.second[2 * k] / self.jet.value - rate * rate;
+        let away = match bend < 0.0 {
+            true => rate / -bend * field.unit(k),
+            false => length,
+        };
+        away.max(self.width[k]).min(length)
     }
 
     /// The direction of an axis, with the curvature along it.

@@ -279,6 +279,17 @@ pub(super) fn sides(axis: &Axis, plane: f64) -> Option<(usize, usize)> {
 }
 
 impl Stencil {
+    /// Root of the sum of the squares of the weights of the slope along an axis, in inverse units of its coordinate.
+    pub(super) fn slope_weight(&self, k: usize) -> f64 {
+        let line = self.lines.get(k).and_then(|lines| lines.get(1));
+        let weights = line.map_or(&[][..], |line| line.weights.as_slice());
+        weights
+            .iter()
+            .map(|weight| weight * weight)
+            .sum::<f64>()
+            .sqrt()
+    }
+
     /// Value and derivatives that some values of the cells give.
     pub(super) fn jet(&self, values: &[f64]) -> Jet {
         let mut jet = Jet::default();

@@ -3,7 +3,8 @@
 //! Without noise a feature is read again as a critical point of a reconstruction of high order, of the density and of
 //! its second discretisation, and of a rougher reconstruction. What these differ by is the error. As the
 //! discretisations may cross at the very place, what differences that are independent from cell to cell would do is
-//! added, to a height the relative difference of the densities as wholes.
+//! added, to a height the relative difference of the densities as wholes. A peak at an end of the range that is not the
+//! system's own may lie as far beyond it as the density goes on rising.
 //! With noise it is read again from every replicate. Heights have besides what standard errors know and replicates do
 //! not, as what a time step does.
 
@@ -50,17 +51,30 @@ fn by_reading_again(estimated: &EstimatedDensity, feature: &Feature) -> Option<F
         _ => 0.0,
     };
     let (rough, independent) = own.shifts(&field, noise, flat);
+    let own_place = &own;
     let along = |k: usize| {
         let [given, own, second, closed] =
             [at, &own.position, &second.position, &closed.position].map(|place| place[k]);
         let read = (given - own).abs() + (second - own).abs() + (closed - own).abs();
-        read + rough[k] + independent[k]
+        let axis = &field.axes()[k];
+        let ends = [axis.from(), axis.to()].map(|end| given == end);
+        let is_cut = |end: usize| ends[end] && !estimated.structure.is_own_end(k, end == 1);
+        let beyond = match is_cut(0) || is_cut(1) {
+            true => own_place.beyond_end(&field, k),
+            false => 0.0,
+        };
+        read + rough[k] + independent[k] + beyond
+    };
+    // Polynomials that end where the feature is make more of what the last cells are off by.
+    let error = match own.is_at_end {
+        true => own.error(estimated) + noise,
+        false => own.error(estimated).max(noise),
     };
     Some(FeatureErrors {
         position: (0..at.len()).map(along).collect(),
         density: Some(
             (feature.density - own.jet.value).abs()
-                + own.error(estimated).max(noise)
+                + error
                 + whole(estimated) * feature.density.abs()
                 + estimated.truncated(cell),
         ),

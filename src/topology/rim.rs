@@ -77,6 +77,11 @@ pub(super) fn summits(
         high - low
     };
     let error = spread(&|one| one.rough) + spread(&|one| one.scheme);
+    // So may a share of the heights: what cells do to high peaks of a crest says nothing of low ones.
+    let share = match crest.iter().all(|one| one.value > 0.0) {
+        true => spread(&|one| one.rough / one.value) + spread(&|one| one.scheme / one.value),
+        false => f64::INFINITY,
+    };
     let peak = |(top, low): (usize, usize)| {
         let (top, low) = (&crest[top], &crest[low]);
         RimPeak {
@@ -84,7 +89,7 @@ pub(super) fn summits(
             density: top.value,
             saddle: low.position.clone(),
             height: top.value - low.value,
-            error,
+            error: error.min(share * top.value),
         }
     };
     let axes = field.axes();

@@ -78,6 +78,50 @@ fn births_at_the_centre_turn_into_births_away_from_it_and_their_fold_is_followed
     assert!(codimension_two(&tree.curves)[0].place[0].abs() < 1e-9);
 }
 
+/// Cells of 0.034 and a box in which a fold is followed past its end: points within six cells of the centre, 0.2, are
+/// not told from their mirror images, and lie up to b = 0.08 from the end, farther than an end may be from what is met.
+#[test]
+fn a_fold_that_was_followed_past_its_degenerate_split_ends_there() {
+    let text = TRICRITICAL
+        .replace("b = -0.5", "b = 0.824")
+        .replace("sqrt(0.1)", "0.7294")
+        .replace(
+            "from = -0.3, to = 0.2, points = 6",
+            "from = -0.5, to = 0.4, points = 19",
+        )
+        .replace(
+            "from = -1.8, to = 1.8, count = 160",
+            "from = -3.2, to = 3.2, count = 187",
+        );
+    for (low, high) in [(-1.0, 1.2), (-0.8, 1.5)] {
+        let plane = (("a", -0.5, 0.4), ("b", low, high));
+        let splits = |row: &pbif::continuation::Located| row.value.abs() < 0.01;
+        let tree = tree(&text, splits, plane, 0.824, CurveOptions::default());
+        let [_, fold] = tree.curves.as_slice() else {
+            panic!("{} curves", tree.curves.len());
+        };
+        assert!(
+            ends(fold).contains(&&EndReason::DegenerateSplit),
+            "{:?}",
+            ends(fold)
+        );
+        // Near the end: far from it errors are those between checks.
+        for point in fold.points.iter().filter(|one| one.values[1] < 0.6) {
+            let [a, b] = point.values;
+            let slope = 0.9_f64.hypot(0.5 * b * (high - low));
+            let off = (a + 0.25 * b * b).abs() / slope;
+            assert!(
+                off <= point.error && point.error < 1e-4,
+                "{point:?}: {off:.1e} off"
+            );
+            assert_eq!(point.status(), BifurcationStatus::Located);
+        }
+        assert!(fold.points.iter().all(|one| one.values[1] > -1e-3));
+        let kind = ("DS1", CodimensionTwoKind::DegenerateSplit);
+        assert_meet(&tree.curves, kind, &[0, 1], [0.0, 0.0], 1e-3);
+    }
+}
+
 #[test]
 fn the_birth_of_a_ring_and_the_loss_of_the_centre_meet_where_both_are_exact() {
     let plane = (("c", -0.1, 0.15), ("b", -0.6, 0.6));

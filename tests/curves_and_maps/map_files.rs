@@ -57,7 +57,7 @@ fn the_program_makes_maps_and_says_what_is_wrong_with_them() {
     room.holds_all("out", "densities/x.csv figures/map_x.svg figures/map_x.png");
     let table = room.read("out/map.csv");
     assert!(
-        table.starts_with("h,a,signature_x,status,level,reason\n"),
+        table.starts_with("h,a,signature_x,status,level,reason,findings\n"),
         "{table}"
     );
     assert!(table.lines().any(|line| line.contains(",2 peaks,")));
@@ -169,4 +169,60 @@ fn what_sweeps_locate_is_marked_in_the_plane_that_they_lie_in() {
     }
     let of_a_run = room.run("plot over_h --with over_a");
     of_a_run.says(&["`--with` marks sweeps in the figure of a plane"]);
+}
+
+/// Four wells that are rotated: exp(-U/0.565) has a crater with four peaks, two of which have a tenth of the height of
+/// the others.
+const FOUR_WELLS: &str = r#"
+[system.equations]
+x = "-0.57*eta*x + 0.135*eta*y + 0.135*theta*x - 0.57*theta*y - 1.96764*x*(x^2 - 1) + 0.45522*y*(y^2 - 0.948)"
+y = "-0.135*eta*x - 0.778*eta*y - 0.778*theta*x - 0.135*theta*y - 0.46602*x*(x^2 - 1) - 2.623416*y*(y^2 - 0.948)"
+[system.noise]
+x = "0.802558409089332"
+y = "0.937624658378821"
+[system.parameters]
+eta = -0.1402
+[sweep]
+parameter = "theta"
+from = -0.75
+to = -0.5
+points = 3
+[cells]
+x = 41
+y = 44
+[detect]
+marginals = []
+joint = [["x", "y"]]
+[map]
+parameter = "eta"
+from = -0.2
+to = -0.1
+points = 3
+depth = 0
+"#;
+
+#[test]
+fn a_map_says_of_its_nodes_what_a_sweep_says_of_its_points() {
+    let room = Room::new();
+    room.write("wells.toml", FOUR_WELLS);
+    let words = [
+        "the cells of x are too wide for the noise",
+        "at 9 of 9 nodes the cells are too wide to count by",
+    ];
+    room.run("sweep wells.toml --out out").ends(1).says(&words);
+    let nodes = room.table("out/map.csv").0;
+    assert_eq!(nodes.len(), 9);
+    for node in &nodes {
+        let [signature, findings] = node.texts(["signature_xy", "findings"]);
+        assert!(findings.contains("wide-cells-x:"), "{findings}");
+        // Errors of high peaks are none of low ones: all are counted.
+        assert_eq!(signature, "crater with 4 peaks");
+    }
+    let said = &room.json("out/map.json");
+    assert_eq!(said["nodes_with_wide_cells"], 9);
+    let drawn = room.read("out/figures/map_xy.svg");
+    assert!(drawn.contains("cells too wide to count by"));
+    // Drawn again from what is stored, to the same picture.
+    room.done("plot out --quiet --out again --format svg");
+    assert_eq!(room.read("again/map_xy.svg"), drawn);
 }

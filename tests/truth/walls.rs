@@ -2,11 +2,13 @@
 
 use std::f64::consts::PI;
 
-use crate::common::sweeps::{rows, swept};
+use crate::common::numbers::assert_holds;
+use crate::common::sweeps::{measure, rows, solved as solved_at, swept};
 use pbif::cancellation::Cancellation;
 use pbif::continuation::{BifurcationStatus, DensitySource, Measure};
 use pbif::method::{GeneratorMethodOptions, GeneratorSource, MonteCarloOptions, MonteCarloSource};
 use pbif::sweep_file::{Sweep, SweepFile};
+use pbif::topology::{Detector, Feature, FeatureKind};
 
 /// A sweep of D, with the lines of a file about it.
 fn sweep(system: &str, rest: &str) -> Sweep {
@@ -184,6 +186,150 @@ y = "reflecting"
     holds(&measures, "sd_x", sd_x, 2e-3);
     holds(&measures, "mean_y", mean_y, 2e-3);
     holds(&measures, "sd_y", sd_y, 2e-3);
+}
+
+/// A potential, of which exp(-2 U) is the density between four walls.
+fn waves(x: f64, y: f64, coupling: f64) -> f64 {
+    0.8 * (2.0 * x).cos() + 0.6 * (2.0 * y + 0.4).cos() + coupling * x * y
+}
+
+/// Walls of x and of y.
+const BETWEEN: [(f64, f64); 2] = [(-1.6, 1.5), (-1.4, 1.7)];
+
+/// ∫∫ f exp(-2 U) by Simpson's rule, over ∫∫ exp(-2 U).
+fn mean_of(coupling: f64, function: &dyn Fn(f64, f64) -> f64) -> f64 {
+    const STEPS: i32 = 400;
+    let along = |(from, to): (f64, f64)| {
+        (0..=STEPS).map(move |k| {
+            let weight = match k {
+                0 | STEPS => 1.0,
+                odd if odd % 2 == 1 => 4.0,
+                _ => 2.0,
+            };
+            (from + (to - from) * f64::from(k) / f64::from(STEPS), weight)
+        })
+    };
+    let (mut sum, mut whole) = (0.0, 0.0);
+    for (x, a) in along(BETWEEN[0]) {
+        for (y, b) in along(BETWEEN[1]) {
+            let weight = a * b * (-2.0 * waves(x, y, coupling)).exp();
+            sum += weight * function(x, y);
+            whole += weight;
+        }
+    }
+    sum / whole
+}
+
+/// ∫ exp(-2 U) dy at a place by the same rule, over ∫∫ exp(-2 U), with its slope.
+fn marginal_at(x: f64, coupling: f64) -> [f64; 2] {
+    let (from, to) = BETWEEN[1];
+    let whole = (BETWEEN[0].1 - BETWEEN[0].0) * (to - from);
+    let inside = |y: f64| (-2.0 * waves(x, y, coupling)).exp();
+    let slope = |y: f64| (3.2 * (2.0 * x).sin() - 2.0 * coupling * y) * inside(y);
+    let integral = |function: &dyn Fn(f64) -> f64| {
+        let terms = (0..=400).map(|k| {
+            let weight = if k % 400 == 0 {
+                1.0
+            } else {
+                f64::from(2 + 2 * (k % 2))
+            };
+            weight * function(from + (to - from) * f64::from(k) / 400.0)
+        });
+        terms.sum::<f64>() * (to - from) / 1200.0
+    };
+    // ∫∫ exp(-2 U) is the area over the mean of exp(2 U).
+    let constant = whole / mean_of(coupling, &|x, y| (2.0 * waves(x, y, coupling)).exp());
+    [integral(&inside) / constant, integral(&slope) / constant]
+}
+
+const WAVES: &str = r#"
+[system.equations]
+x = "1.6 sin(2 x) - k y"
+y = "1.2 sin(2 y + 0.4) - k x"
+[system.noise]
+x = "1"
+y = "1"
+[system.bounds]
+x = "reflecting"
+y = "reflecting"
+[sweep]
+parameter = "k"
+from = -0.3
+to = 0.3
+points = 2
+[watch]
+w = "x y"
+v = "exp(x/2) cos(y)"
+"#;
+
+/// Fluxes beside walls that two schemes share would be errors that their difference does not show.
+#[test]
+fn formulas_between_four_walls_have_the_means_and_deviations_of_the_exact_density() {
+    for (counts, k) in [([54, 59], -0.17), ([42, 37], 0.23), ([60, 60], 0.0)] {
+        let [x, y] = counts;
+        let cells = format!(
+            "{WAVES}[cells]\nx = {{ from = -1.6, to = 1.5, count = {x} }}\ny = {{ from = -1.4, to = 1.7, count = {y} }}\n"
+        );
+        let (_, solution) = solved_at(&cells, "", Some(k));
+        type Function = fn(f64, f64) -> f64;
+        let all: [(&str, Function); 4] = [
+            ("x", |x, _| x),
+            ("y", |_, y| y),
+            ("w", |x, y| x * y),
+            ("v", |x, y| (0.5 * x).exp() * y.cos()),
+        ];
+        for (name, function) in all {
+            let mean = mean_of(k, &function);
+            let spread = mean_of(k, &|x, y| (function(x, y) - mean).powi(2)).sqrt();
+            for (kind, exact) in [("mean", mean), ("sd", spread)] {
+                let found = measure(&solution, &format!("{kind}_{name}"));
+                println!("{kind}_{name} at {k}: {found:?}, exactly {exact}");
+                assert_holds(found.into(), exact, 2e-3);
+            }
+        }
+    }
+}
+
+/// Peaks of p(x) at a wall, and beside one within the outermost cell: places and heights.
+#[test]
+fn peaks_at_walls_and_beside_them_are_where_those_of_the_exact_density_are() {
+    for k in [-0.17, 0.0, 0.12, 0.3] {
+        let cells = format!(
+            "{WAVES}[cells]\nx = {{ from = -1.6, to = 1.5, count = 54 }}\ny = {{ from = -1.4, to = 1.7, count = 59 }}\n"
+        );
+        let (sweep, solution) = solved_at(&cells, "", Some(k));
+        let detection = sweep.detector().detect(&solution.densities[0]);
+        let peaks = detection.features.iter();
+        let peaks: Vec<&Feature> = peaks.filter(|one| one.kind == FeatureKind::Peak).collect();
+        assert_eq!(peaks.len(), 2, "{peaks:?}");
+        for peak in peaks {
+            let (at, error) = (peak.position[0], peak.errors.position[0]);
+            let wall = if at < 0.0 { -1.6 } else { 1.5 };
+            let outward = f64::signum(wall);
+            let rises = |x: f64| outward * marginal_at(x, k)[1] > 0.0;
+            let exact = match rises(wall) {
+                true => wall,
+                false => {
+                    let (mut low, mut high) = (wall - 0.5 * outward, wall);
+                    for _ in 0..40 {
+                        let middle = 0.5 * (low + high);
+                        *(if rises(middle) { &mut low } else { &mut high }) = middle;
+                    }
+                    low
+                }
+            };
+            println!("peak at {at} ± {error:e}, exactly {exact}");
+            assert!(
+                (at - exact).abs() <= error + 1e-9,
+                "{at} ± {error:e}, exactly {exact}"
+            );
+            assert!(error < 5e-3);
+            let height = marginal_at(exact, k)[0];
+            let stated = [peak.density, peak.errors.density.unwrap()];
+            println!("height {stated:?}, exactly {height}");
+            assert_holds(stated, height, 5e-3 * height);
+        }
+    }
 }
 
 #[test]

@@ -100,8 +100,9 @@ pub(super) fn add_ends(
             let on_kink = kinks.any(|kink| folds.is_centre(kink));
             let smooth = folds.centre.filter(|_| !on_kink);
             let centre = smooth.and_then(|(centre, _)| {
-                let tail = Tail::new(inward.get(unsure..)?, folds.plane)?;
-                Some((at_centre(&tail, centre)?, unsure))
+                let (left_out, told) = inward.split_at_checked(unsure)?;
+                let tail = Tail::new(told, folds.plane)?;
+                Some((at_centre(&tail, centre, (left_out, folds.plane))?, unsure))
             });
             let cusp = || Some((cusp(&Tail::new(&inward, folds.plane)?, rising)?, 0));
             let kink = || folds.at_kink(&inward, is_first);
@@ -201,11 +202,23 @@ fn point(beyond: &Beyond, last: &CurvePoint, is_first: bool, folds: &Folds<'_>) 
 }
 
 /// Where a fold and its mirror image meet in the centre: both parameters are smooth functions of the square of the
-/// distance from it.
-fn at_centre(tail: &Tail<'_>, centre: f64) -> Option<Beyond> {
+/// distance from it. Points that are left out, since they are not told from their mirror images, say nothing of where
+/// exactly that is, and show how near to it the fold was met.
+fn at_centre(
+    tail: &Tail<'_>,
+    centre: f64,
+    (left_out, plane): (&[&CurvePoint], &Plane),
+) -> Option<Beyond> {
     let branch = (EndReason::DegenerateSplit, IndicatorKind::CURVATURE);
-    let found = meeting(tail, (centre, 2), branch)?;
-    (apart(found.at, tail.values[0]) <= FAR).then_some(found)
+    let distance = |place: &f64| (place - centre).abs();
+    let met = left_out.iter().filter_map(|point| point.place.first());
+    let nearest = met.map(distance).fold(f64::INFINITY, f64::min);
+    let found = meeting(tail, (centre, 2), nearest, branch)?;
+    let met = left_out.iter().map(|point| plane.place(point.values));
+    let met = met.chain(tail.values.first().copied());
+    let gaps = met.map(|place| apart(found.at, place));
+    let is_near = gaps.fold(f64::INFINITY, f64::min) <= FAR;
+    (is_near && (left_out.is_empty() || found.error <= MOST_VAGUE)).then_some(found)
 }
 
 /// Where a fold comes to a kink: both parameters are smooth functions of the distance from it.
@@ -217,21 +230,25 @@ fn at_kink(tail: &Tail<'_>, beside: &KinkAtEnd, is_centre: bool) -> Option<Beyon
         // The kink is what it was before the pair on this side: the peak or valley that the other side says.
         IndicatorKind::beside_kink(above, beside.rises_away[usize::from(!above)])
     };
-    let found = meeting(tail, (beside.at, 1), (EndReason::DegenerateKink, kind))?;
+    let branch = (EndReason::DegenerateKink, kind);
+    let found = meeting(tail, (beside.at, 1), f64::INFINITY, branch)?;
     let is_near = apart(found.at, tail.values[0]) <= FAR_FROM_KINK;
     (is_near && found.error <= MOST_VAGUE).then_some(found)
 }
 
 /// Where a fold meets a place in the density, both parameters being smooth functions of this power of its distance from
-/// there; with the indicator whose curve passes there.
+/// there; with the indicator whose curve passes there. Points that are no part of the tail may have come as near to it
+/// as `met`.
 fn meeting(
     tail: &Tail<'_>,
     (place, power): (f64, i32),
+    met: f64,
     (reason, kind): (EndReason, IndicatorKind),
 ) -> Option<Beyond> {
     let distances = tail.places.iter().map(|x| (x - place).abs().powi(power));
     let distances: Vec<f64> = distances.collect();
     let (nearest, scale) = (distances[0], distances[distances.len() - 1]);
+    let nearest = nearest.min(met.powi(power));
     let leaves = distances.windows(2).all(|pair| pair[1] > pair[0]);
     if !leaves || nearest > NEAR.powi(power) * scale {
         return None;

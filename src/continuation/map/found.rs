@@ -3,7 +3,7 @@
 use crate::continuation::curve::{
     CodimensionTwo, Curve, CurveWork, LevelCurve, Plane, codimension_two,
 };
-use crate::continuation::{PointStatus, Subject};
+use crate::continuation::{Finding, PointStatus, Subject};
 use crate::density::Density;
 use crate::system::MeasureLevel;
 use crate::topology::Signature;
@@ -30,6 +30,24 @@ pub struct MapNode {
         serde(default, skip_serializing_if = "Vec::is_empty")
     )]
     pub numbers: Vec<Option<f64>>,
+    /// What must be known of it, as of a point of a sweep.
+    #[cfg_attr(
+        feature = "serde",
+        serde(
+            default,
+            skip_serializing_if = "Vec::is_empty",
+            with = "crate::continuation::finding::stored"
+        )
+    )]
+    pub findings: Vec<Finding>,
+}
+
+impl MapNode {
+    /// Whether its cells are too wide to count by.
+    pub fn has_wide_cells(&self) -> bool {
+        let mut findings = self.findings.iter();
+        findings.any(|one| matches!(one, Finding::WideCells { .. }))
+    }
 }
 
 /// What changes between neighbouring nodes.

@@ -231,6 +231,7 @@ impl<'a> Solver<'a> {
                 .flat_map(|levels| levels.asked)
                 .map(|asked| Some(measure_of(&point.report, asked)?.value))
                 .collect(),
+            findings: point.report.findings.clone(),
         };
         Some(SolvedNode {
             point: Some(point),

@@ -6,7 +6,7 @@ use plotters_backend::text_anchor::HPos;
 use super::Sketch;
 use super::curve::{entries, stroke_of};
 use crate::continuation::curve::{Curve, EndReason, SweepInPlane};
-use crate::continuation::map::{RegimeMap, RegionPicture, RegionSample};
+use crate::continuation::map::{MapNode, RegimeMap, RegionPicture, RegionSample};
 use crate::density::Observable;
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::heat::Picture;
@@ -39,6 +39,8 @@ const FINE: f64 = 2.0;
 const TINT: f64 = 0.26;
 /// Between the words of a region and its density, in pixels.
 const GAP: f64 = 3.0;
+/// Half the length of the `+` on a node whose cells are too wide to count by, in pixels.
+const PLUS: f64 = 2.0;
 /// Radius of the dots where curves end inside the box, in pixels.
 const DOT: f64 = 3.0;
 
@@ -159,6 +161,10 @@ impl Scene<'_> {
         self.levels.draw(&panel);
         self.crossed.draw(&panel);
         self.draw_ends(&page, &panel);
+        for node in self.map.nodes.iter().filter(|node| node.has_wide_cells()) {
+            let [x, y] = node.values;
+            panel.draw(&[(x, y)], Shape::Plus(PLUS, Stroke::solid(INK, 0.8)));
+        }
         frame::around(&page, rect, (&across, &up));
         for placed in &places {
             placed.draw(&page, look);
@@ -254,6 +260,9 @@ impl Scene<'_> {
         entries.extend(self.stability.entries());
         entries.extend(self.levels.entries());
         entries.extend(self.crossed.entries());
+        if self.map.nodes.iter().any(MapNode::has_wide_cells) {
+            entries.push((Swatch::Plus, "cells too wide to count by".to_owned()));
+        }
         if let Some(ground) = ground {
             for (kind, signature) in ground.kinds.iter().enumerate() {
                 let text = words(*signature);
@@ -309,6 +318,16 @@ impl Scene<'_> {
                 ends.join(", "),
             );
         }
+        let wide = self.map.nodes.iter().filter(|node| node.has_wide_cells());
+        match wide.count() {
+            0 => {}
+            wide => {
+                text += &format!(
+                    " At the {wide} of {} nodes that are marked `+` the cells are too wide to count by.",
+                    self.map.nodes.len()
+                );
+            }
+        }
         text += &self.stability.caption();
         text += &self.levels.caption();
         text += &self.crossed.caption();
@@ -341,7 +360,11 @@ impl Scene<'_> {
         for node in &self.map.nodes {
             let [x, y] = node.values;
             let signature = node.signatures.get(self.index).copied();
-            text += &format!("node,{x},{y},{}\n", words(signature));
+            let kind = match node.has_wide_cells() {
+                true => "node with wide cells",
+                false => "node",
+            };
+            text += &format!("{kind},{x},{y},{}\n", words(signature));
         }
         for (row, to_edge, status) in self.crossed.data() {
             let ([x, y], error) = (row.values, to_edge[0] + to_edge[1]);

@@ -208,11 +208,17 @@ pub(super) fn structure(
     if centre.as_ref().is_some_and(is_torn) {
         centre = None;
     }
+    let ranges = space.ranges();
+    let own_end = |&axis: &usize| match space.axes()[axis].is_modes() {
+        true => [true; 2],
+        false => system::closed_ends(system, axis, &ranges),
+    };
     Structure {
         centre,
         kinks,
         ..Structure::default()
     }
+    .with_own_ends(axes.iter().map(own_end))
 }
 
 /// The point of symmetry, where all axes that are kept are reflected.

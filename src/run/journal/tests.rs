@@ -73,6 +73,7 @@ fn density(observable: Observable, variants: fn(Vec<f64>) -> Variants) -> Estima
             }],
             profile: Some(Arc::new(profile())),
             is_spread: true,
+            own_ends: vec![[true, false]],
         },
         negligible: 1e-9,
         truncation: Default::default(),

@@ -109,6 +109,8 @@ impl Opened {
             let numbers = centre.iter().filter_map(Value::as_f64);
             numbers.collect::<Vec<f64>>()
         });
+        let own_ends = density.attributes().get(arrays::OWN_ENDS);
+        let own_ends = own_ends.and_then(|ends| serde_json::from_value(ends.clone()).ok());
         let negligible = density.attributes().get(arrays::NEGLIGIBLE);
         let negligible = negligible.and_then(Value::as_f64);
         Ok(Observed {
@@ -118,6 +120,7 @@ impl Opened {
             range_ends: self.range_ends(&name)?,
             closed: self.optional(&DensityPart::Closed.name(family, observable), &shape)?,
             replicates: self.optional(&DensityPart::Replicates.name(family, observable), &shape)?,
+            own_ends: own_ends.unwrap_or_default(),
             centre: centre.filter(|centre| centre.len() == axes.len()),
             kinks: self.kinks(family, observable, &shape)?,
             negligible: negligible.unwrap_or(NEGLIGIBLE),

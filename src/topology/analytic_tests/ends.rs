@@ -95,3 +95,27 @@ fn a_marginal_that_rises_to_a_wall_has_its_peak_there() {
     assert!((peak.density - exact).abs() <= peak.errors.density.unwrap().max(1e-9));
     assert!((peak.density - exact).abs() < 1e-7);
 }
+
+/// A normal density that is cut off before its peak: the end is where it is highest, and no more than where it was cut.
+#[test]
+fn a_peak_at_an_end_that_is_not_the_systems_own_may_lie_beyond_it() {
+    for (middle, variance) in [(0.4, 0.5), (0.15, 0.2), (1.0, 2.0), (0.02, 1.0)] {
+        let axis = Axis::uniform(-2.0, 0.0, 40).unwrap();
+        let density = |x: f64| (-0.5 * (x - middle) * (x - middle) / variance).exp();
+        let mut estimated = marginal(&axis, density);
+        let place = |estimated: &EstimatedDensity| {
+            let detector = PersistenceDetector::new(DetectOptions::default(), 1);
+            let detection = detector.detect(estimated);
+            let peak = detection.ranked(FeatureKind::Peak, 0).unwrap();
+            (peak.position[0], peak.errors.position[0])
+        };
+        let (at, error) = place(&estimated);
+        assert_eq!(at, 0.0);
+        // The parabola of the logarithm is exact here, and the error no less than a cell.
+        let expected = f64::max(middle, 0.05);
+        assert!((error / expected - 1.0).abs() < 1e-2, "{error} {expected}");
+        // A wall is where it is.
+        estimated.structure.own_ends = vec![[true, true]];
+        assert_eq!(place(&estimated), (0.0, 0.0));
+    }
+}
