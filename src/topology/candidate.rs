@@ -201,6 +201,9 @@ fn height(
         true => height.min(component.persistence),
         false => height,
     };
+    // A density is nowhere negative: beside a saddle that is, a peak stands out by no more than its own height.
+    let highest = if is_crater { &saddle } else { &extremum };
+    let height = height.min(highest.value(values));
     // Else a cell that is the highest around it only because of how the cells lie.
     let is_level = |place: &Critical| place.is_level(height, estimated);
     let is_of_kind = extremum.is_of_kind(kind, height) && is_level(&extremum) && is_level(&saddle);

@@ -247,7 +247,7 @@ impl Critical {
     }
 
     /// Value of another variant of the density at the same place.
-    fn value(&self, values: &[f64]) -> f64 {
+    pub(super) fn value(&self, values: &[f64]) -> f64 {
         self.fine.value(values)
     }
 
