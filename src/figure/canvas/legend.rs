@@ -33,6 +33,8 @@ pub(crate) enum Swatch {
     Valleys,
     /// A `+` on a piece of heat map.
     Plus,
+    /// A small `+` alone, of this half length and stroke.
+    Cross(f64, Stroke),
     /// A ring on a piece of heat map.
     Ring,
     /// A hatched box.
@@ -121,6 +123,7 @@ fn draw_swatch(page: &Page, swatch: Swatch, (x, y): (f64, f64)) {
             heat(0.8);
             page.mark(&[middle], plus());
         }
+        Swatch::Cross(half, stroke) => page.draw(&[middle], Shape::Plus(half, stroke)),
         Swatch::Ring => {
             heat(0.2);
             page.mark(&[middle], ring());

@@ -119,6 +119,11 @@ impl Ground {
     }
 }
 
+/// The line of the mark of a node.
+fn node_stroke() -> Stroke {
+    Stroke::solid(INK, 0.8)
+}
+
 fn words(signature: Option<Signature>) -> String {
     signature.map_or_else(
         || "no steady state, or not converged".to_owned(),
@@ -163,7 +168,7 @@ impl Scene<'_> {
         self.draw_ends(&page, &panel);
         for node in self.map.nodes.iter().filter(|node| node.has_wide_cells()) {
             let [x, y] = node.values;
-            panel.draw(&[(x, y)], Shape::Plus(PLUS, Stroke::solid(INK, 0.8)));
+            panel.draw(&[(x, y)], Shape::Plus(PLUS, node_stroke()));
         }
         frame::around(&page, rect, (&across, &up));
         for placed in &places {
@@ -261,7 +266,8 @@ impl Scene<'_> {
         entries.extend(self.levels.entries());
         entries.extend(self.crossed.entries());
         if self.map.nodes.iter().any(MapNode::has_wide_cells) {
-            entries.push((Swatch::Plus, "cells too wide to count by".to_owned()));
+            let swatch = Swatch::Cross(PLUS, node_stroke());
+            entries.push((swatch, "cells too wide to count by".to_owned()));
         }
         if let Some(ground) = ground {
             for (kind, signature) in ground.kinds.iter().enumerate() {
