@@ -330,6 +330,11 @@ impl Finding {
         (code, axis)
     }
 
+    /// Whether it says that cells are too wide to count by.
+    pub(crate) fn is_of_wide_cells(&self) -> bool {
+        matches!(self, Self::WideCells { .. })
+    }
+
     /// Says of coordinates of an axis that are measured from another origin where they lie.
     pub(crate) fn displace(&mut self, moved: usize, by: f64) {
         match self {

@@ -175,8 +175,7 @@ pub(super) fn by_indicator(
 }
 
 pub(super) fn has_wide_cells(point: &Point) -> bool {
-    let mut findings = point.report.findings.iter();
-    findings.any(|finding| matches!(finding, Finding::WideCells { .. }))
+    point.report.findings.iter().any(Finding::is_of_wide_cells)
 }
 
 /// Whether the drift jumps inside of the cells of one of two points, and finer cells move with it.

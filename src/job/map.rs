@@ -2,7 +2,7 @@
 
 use super::{Context, Job, JobError, Outcome, Progress};
 use crate::continuation::curve::Curve;
-use crate::continuation::map::{MapMaker, MapNode, MapProgress, MapShard, RegimeMap};
+use crate::continuation::map::{MapMaker, MapProgress, MapShard, RegimeMap};
 use crate::continuation::{DensitySource, Shard, SourceError, SweepError};
 use crate::figure::{Figure, Figures};
 use crate::run::{JobFolder, JournalledSource, Layout, RunError, map_files, map_shard_file};
@@ -58,7 +58,7 @@ impl Job for MapJob<'_> {
             points.all(|point| locate.is_met_by(point.status()))
         };
         let is_complete = found.nodes.iter().all(|node| node.status.is_resolved())
-            && !found.nodes.iter().any(MapNode::has_wide_cells)
+            && found.nodes_with_wide_cells() == 0
             && found.untraced.is_empty()
             && found.curves.iter().all(is_met);
         Outcome::of(found.interrupted, is_complete)

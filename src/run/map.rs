@@ -156,7 +156,7 @@ fn map_json(map: &RegimeMap, sweep: &str, seconds: f64) -> Result<String, RunErr
             .map(|side| json!({ "parameter": side.parameter, "from": side.from, "to": side.to }))
             .collect::<Vec<_>>(),
         "nodes": map.nodes.len(),
-        "nodes_with_wide_cells": map.nodes.iter().filter(|node| node.has_wide_cells()).count(),
+        "nodes_with_wide_cells": map.nodes_with_wide_cells(),
         "warnings": warnings_of_nodes(map),
         "regions": regions.collect::<Vec<_>>(),
         "curves": curves.collect::<Vec<_>>(),

@@ -56,8 +56,7 @@ pub(crate) fn warnings_of_nodes(map: &RegimeMap) -> Vec<String> {
         format!("{}: {words}{more}", place.join(", "))
     };
     let mut told: Vec<String> = kinds.iter().map(sentence).collect();
-    let wide = map.nodes.iter().filter(|node| node.has_wide_cells());
-    let wide = wide.count();
+    let wide = map.nodes_with_wide_cells();
     if wide > 0 {
         let nodes = map.nodes.len();
         told.push(format!(

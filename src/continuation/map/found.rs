@@ -45,8 +45,7 @@ pub struct MapNode {
 impl MapNode {
     /// Whether its cells are too wide to count by.
     pub fn has_wide_cells(&self) -> bool {
-        let mut findings = self.findings.iter();
-        findings.any(|one| matches!(one, Finding::WideCells { .. }))
+        self.findings.iter().any(Finding::is_of_wide_cells)
     }
 }
 
@@ -121,6 +120,12 @@ impl RegimeMap {
     /// The points of codimension two of its curves, by their places in [`RegimeMap::curves`].
     pub fn codimension_two(&self) -> Vec<CodimensionTwo> {
         codimension_two(&self.curves)
+    }
+
+    /// How many of its nodes have cells that are too wide to count by.
+    pub(crate) fn nodes_with_wide_cells(&self) -> usize {
+        let nodes = self.nodes.iter();
+        nodes.filter(|node| node.has_wide_cells()).count()
     }
 
     /// The place of an observable among those that are watched; `None` for one that is not.

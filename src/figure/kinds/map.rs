@@ -6,7 +6,7 @@ use plotters_backend::text_anchor::HPos;
 use super::Sketch;
 use super::curve::{entries, stroke_of};
 use crate::continuation::curve::{Curve, EndReason, SweepInPlane};
-use crate::continuation::map::{MapNode, RegimeMap, RegionPicture, RegionSample};
+use crate::continuation::map::{RegimeMap, RegionPicture, RegionSample};
 use crate::density::Observable;
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::heat::Picture;
@@ -265,7 +265,7 @@ impl Scene<'_> {
         entries.extend(self.stability.entries());
         entries.extend(self.levels.entries());
         entries.extend(self.crossed.entries());
-        if self.map.nodes.iter().any(MapNode::has_wide_cells) {
+        if self.map.nodes_with_wide_cells() > 0 {
             let swatch = Swatch::Cross(PLUS, node_stroke());
             entries.push((swatch, "cells too wide to count by".to_owned()));
         }
@@ -324,8 +324,7 @@ impl Scene<'_> {
                 ends.join(", "),
             );
         }
-        let wide = self.map.nodes.iter().filter(|node| node.has_wide_cells());
-        match wide.count() {
+        match self.map.nodes_with_wide_cells() {
             0 => {}
             wide => {
                 text += &format!(
