@@ -152,7 +152,7 @@ impl Told {
 impl SweepResult {
     /// The densities that the sweep counts differently at some of its values although finer cells have shown that
     /// nothing changes between them: its cells are too wide to count by.
-    pub(crate) fn miscounted(&self) -> Vec<Observable> {
+    pub fn miscounted(&self) -> Vec<Observable> {
         let is_miscounted = |&(place, observable): &(usize, &Observable)| {
             let is_looked_at = self.looks.iter().any(|look| look.observable == *observable);
             let has_rows = self.bifurcations().any(|row| row.observable == *observable);

@@ -204,7 +204,7 @@ impl SweepResult {
 
     /// The levels that are asked for and no value crosses, with the smallest and the largest number found; `None` where
     /// the number is known nowhere.
-    pub(crate) fn uncrossed_levels(&self) -> Vec<(crate::system::MeasureLevel, Option<[f64; 2]>)> {
+    pub fn uncrossed_levels(&self) -> Vec<(crate::system::MeasureLevel, Option<[f64; 2]>)> {
         let is_crossed = |asked: &crate::system::MeasureLevel| {
             let mut rows = self.labels.iter();
             rows.any(|row| matches!(row, Label::Level(one) if one.asked == *asked))

@@ -67,7 +67,7 @@ impl Point {
     }
 
     /// Whether the point has a steady state whose watched densities are positive enough for their shapes to be read.
-    pub(crate) fn is_sound(&self) -> bool {
+    pub fn is_sound(&self) -> bool {
         let mut findings = self.report.findings.iter();
         self.report.status.is_resolved() && !findings.any(Finding::is_too_negative)
     }

@@ -32,7 +32,7 @@ const GAUSS: [(f64, f64); 3] = [
 
 /// Rates over a barrier by formulas, per unit of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct EscapeFormulas {
+pub struct EscapeFormulas {
     /// By Kramers' formula for moderate and strong damping.
     pub kramers: f64,
     /// The same with Mel'nikov and Meshkov's factor, for all damping.
@@ -42,7 +42,7 @@ pub(crate) struct EscapeFormulas {
 /// The rates at which a particle goes from the deepest bottom in one region to the deepest in another; regions are told
 /// by whether a position at rest is inside. `None` where they have no bottoms within a range, where more than one top
 /// is between, or where a well does not end.
-pub(crate) fn escape_formulas(
+pub fn escape_formulas(
     particle: &DampedParticle,
     range: (f64, f64),
     [from, to]: [&dyn Fn(f64) -> bool; 2],

@@ -109,7 +109,7 @@ mod switching;
 mod transfer;
 
 pub(crate) use grid::turning_rate;
-pub(crate) use kramers::{EscapeFormulas, escape_formulas};
+pub use kramers::{EscapeFormulas, escape_formulas};
 pub(crate) use on_line::{power_spectra_on_line, slow_modes_on_line};
 pub(crate) use power::rate_of_change;
 pub use power::{Features, Power, PowerQuestion, Spectrum, StateFunction, power_spectra};

@@ -90,9 +90,11 @@ pub(crate) use symmetry::{proved_symmetry, symmetry_over_a_period};
 pub(crate) use tangent::TangentFault;
 pub(crate) use tangent::{HALF_TURN, Tangent};
 use typed::Compiled;
-pub(crate) use typed::{DampedParticle, FormulaHazard};
+pub use typed::DampedParticle;
+pub(crate) use typed::FormulaHazard;
 pub use typed::{
-    FormulaPlace, Interpretation, PeriodFault, TypedEquations, TypedModel, TypedModelError,
+    CompiledDrift, FormulaPlace, Interpretation, PeriodFault, TypedEquations, TypedModel,
+    TypedModelError,
 };
 
 /// An Itô equation dX = a(X, t) dt + Σ_k b_k(X, t) e_{axis(k)} dW_k with bound parameters.

@@ -50,8 +50,7 @@ pub use found::{
 pub(crate) use level::level_name;
 pub use level::{LevelCurve, follow_level};
 pub use plane::{Plane, PlaneSide};
-pub(crate) use stability::stability_curves;
-pub use stability::{StabilityCurve, StabilityKind, StabilityPoint};
+pub use stability::{StabilityCurve, StabilityKind, StabilityPoint, stability_curves};
 pub use tree::{CurveTree, MissedBranch, follow_all};
 pub(super) use tree::{ON_IT, distance};
 

@@ -77,7 +77,7 @@ impl StabilityCurve {
     }
 
     /// The largest error of its points.
-    pub(crate) fn largest_error(&self) -> f64 {
+    pub fn largest_error(&self) -> f64 {
         let errors = self.points.iter().map(|point| point.error);
         errors.fold(0.0, f64::max)
     }
@@ -110,7 +110,7 @@ impl StabilityCurve {
 /// # Ok(())
 /// # }
 /// ```
-pub(crate) fn stability_curves(family: &Family, plane: &Plane) -> Vec<StabilityCurve> {
+pub fn stability_curves(family: &Family, plane: &Plane) -> Vec<StabilityCurve> {
     let Some(state) = family.questions.fixed_point.as_deref() else {
         return Vec::new();
     };

@@ -6,7 +6,7 @@ use super::TypedModel;
 use crate::system::{CompiledSteps, Facts, Lanes};
 
 /// Drift of a batch: time and states in, slopes out.
-pub(in crate::system) type CompiledDrift = Box<dyn Fn(f64, &[Lanes], &mut [Lanes]) + Send + Sync>;
+pub type CompiledDrift = Box<dyn Fn(f64, &[Lanes], &mut [Lanes]) + Send + Sync>;
 
 /// What of a model with its values is compiled.
 pub(in crate::system) struct Compiled {
@@ -62,7 +62,7 @@ impl TypedModel {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
-    pub(crate) fn with_compiled_drift(
+    pub fn with_compiled_drift(
         mut self,
         bind: impl Fn(&[f64]) -> CompiledDrift + Send + Sync + 'static,
     ) -> Self {
@@ -86,10 +86,7 @@ impl TypedModel {
     /// The model with the logarithm of its steady-state density at values of the parameters and a state, up to a
     /// constant, where it is known exactly.
     #[must_use]
-    pub(crate) fn with_exact_log_density(
-        mut self,
-        density: fn(&[f64], &[f64]) -> Option<f64>,
-    ) -> Self {
+    pub fn with_exact_log_density(mut self, density: fn(&[f64], &[f64]) -> Option<f64>) -> Self {
         self.extras.log_density = Some(density);
         self
     }

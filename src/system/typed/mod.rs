@@ -27,10 +27,11 @@ use crate::formula::language::typeset_name;
 use compiled::Extras;
 
 pub(super) use compiled::Compiled;
+pub use compiled::CompiledDrift;
 pub(crate) use equations::FormulaHazard;
 pub use equations::TypedEquations;
 pub use error::{FormulaPlace, PeriodFault, TypedModelError};
-pub(crate) use particle::DampedParticle;
+pub use particle::DampedParticle;
 
 /// How a stochastic integral is read where the amplitude of a noise depends on the state that it drives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -269,7 +270,7 @@ impl TypedModel {
     ///
     /// # Errors
     /// Every name, equation, noise, definition and bound that is wrong; never empty.
-    pub(crate) fn build_or_all_errors(self) -> Result<Arc<Model>, Vec<TypedModelError>> {
+    pub fn build_or_all_errors(self) -> Result<Arc<Model>, Vec<TypedModelError>> {
         let (reading, found) = read::read(&self)?;
         let reading = Arc::new(reading);
         let statements = self.statements();

@@ -6,7 +6,7 @@ use crate::formula::graph::{Expression, Graph, Point, Symbol};
 /// x' = y, y' = F(x) - g y + s ξ(t), with values of the parameters: a particle in the potential of F whose friction and
 /// noise belong to the temperature s²/(2 g).
 #[derive(Debug, Clone)]
-pub(crate) struct DampedParticle {
+pub struct DampedParticle {
     /// Axis of the position x.
     pub position: usize,
     /// Damping g, in 1/t.
@@ -21,12 +21,12 @@ pub(crate) struct DampedParticle {
 
 impl DampedParticle {
     /// The force F at a position.
-    pub(crate) fn force(&self, position: f64) -> f64 {
+    pub fn force(&self, position: f64) -> f64 {
         self.at(self.force, position)
     }
 
     /// Curvature of the potential at a position: -F'.
-    pub(crate) fn curvature(&self, position: f64) -> f64 {
+    pub fn curvature(&self, position: f64) -> f64 {
         -self.at(self.slope, position)
     }
 
