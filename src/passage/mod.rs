@@ -106,8 +106,8 @@ pub(crate) use reactive::are_apart;
 pub use reactive::{Reactive, reactive};
 pub(crate) use timed::timed_from;
 pub use timed::{Timed, WithError, timed};
-pub(crate) use visits::is_endless;
 pub use visits::{Visits, visits};
+pub(crate) use visits::{is_endless, visits_and};
 
 use crate::generator::{GeneratorError, levels};
 use crate::space::{CellSpace, SpaceError};

@@ -50,10 +50,21 @@ const ROUNDING: f64 = 1e-9;
 /// [`PassageError::Generator`] for a level that has no value at a node, [`PassageError::Space`] where modes across the
 /// border take too many cells.
 pub fn visits(
-    (system, space): (&dyn System, &CellSpace),
+    cells: (&dyn System, &CellSpace),
     region: &BoundQuantity,
     density: KnownDensity<'_>,
 ) -> Result<Visits, PassageError> {
+    Ok(visits_and(cells, region, density, &[])?.0)
+}
+
+/// The same, and what some other unknowns on these cells add to the probability of the region and to the entries per
+/// unit of time; nothing of them where the region lies across axes of modes, on whose cells they are not known.
+pub(crate) fn visits_and(
+    (system, space): (&dyn System, &CellSpace),
+    region: &BoundQuantity,
+    density: KnownDensity<'_>,
+    others: &[Vec<f64>],
+) -> Result<(Visits, Vec<[f64; 2]>), PassageError> {
     let angles: Vec<bool> = space.axes().iter().map(Axis::is_closed).collect();
     let laid = LaidOut::new((system, space), region, density)?;
     let by_modes = change_by_modes(space, &density, region)?;
@@ -62,10 +73,13 @@ pub fn visits(
         None => (space, density),
     };
     let added = laid.as_ref().map(LaidOut::added).unwrap_or_default();
+    let others = if laid.is_some() { &[] } else { others };
+    let all = [added.as_slice(), others].concat();
     let largest = |changes: &mut dyn Iterator<Item = f64>| {
         changes.fold(0.0, |most: f64, change| most.max(change.abs()))
     };
-    let (mut time_share, changes) = mass_beside(cells, &density, region, &added)?;
+    let (mut time_share, mut changes) = mass_beside(cells, &density, region, &all)?;
+    let shares = changes.split_off(added.len());
     time_share.1 += largest(&mut changes.into_iter()) + by_modes;
     let axes = cells.axes().iter();
     let cut = axes.filter(|axis| !axis.is_modes()).count();
@@ -77,11 +91,15 @@ pub fn visits(
     let border = |intervals| Border::new((system, cells, &angles), region, intervals);
     let (fine, rough) = (border(intervals), border(intervals / 2));
     if fine.is_endless || fine.crossings.is_empty() {
-        return Ok(Visits {
+        let visits = Visits {
             time_share,
             entries: None,
             is_endless: fine.is_endless,
-        });
+        };
+        return Ok((
+            visits,
+            shares.into_iter().map(|share| [share, 0.0]).collect(),
+        ));
     }
     let (own, (rate, error)) = rate([&fine, &rough], density);
     let error = error + largest(&mut added.iter().map(|values| dot(&own, values)));
@@ -91,11 +109,14 @@ pub fn visits(
         let longest = (time_share.0 + time_share.1) / least;
         [(rate, error), (visit, longest - visit)]
     });
-    Ok(Visits {
+    let visits = Visits {
         time_share,
         entries,
         is_endless: false,
-    })
+    };
+    let both = shares.into_iter().zip(others);
+    let of_others = both.map(|(share, values)| [share, dot(&own, values)]);
+    Ok((visits, of_others.collect()))
 }
 
 /// Entries per unit of time over a border that is met at many places and at fewer, with an error; before it, what one

@@ -174,9 +174,15 @@ fn visits_that_have_no_numbers_are_refused_with_a_way_out() {
         &["`peak` is neither an inequality nor the name of a region"],
     );
     refused("visits.high=2", &["`visits.high`", "string"]);
-    refused(
-        "method.kind=\"sgcm\"",
-        &["visits are worked out by `generator` and `monte-carlo`"],
+    room.write(
+        "forced.toml",
+        "[system.equations]\nx = \"v\"\nv = \"-0.4 v - x + F cos(t)\"\n[system.noise]\nv = \"0.5\"\n\
+         [system.parameters]\nF = 0.2\n[sweep]\nparameter = \"F\"\nfrom = 0.1\nto = 0.2\npoints = 2\n\
+         [visits]\nhigh = \"x > 0.5\"\n[method]\nkind = \"sgcm\"\n",
+    );
+    room.refused(
+        "check forced.toml",
+        &["visits of a forced system are worked out by `generator` and `monte-carlo`"],
     );
     let line = "[system.equations]\nx = \"x - x^3\"\n[system.noise]\nx = \"sqrt(2 D)\"\n[system.parameters]\nD = 0.2\n\
                 [sweep]\nparameter = \"D\"\nfrom = 0.1\nto = 0.2\npoints = 2\n";

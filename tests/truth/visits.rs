@@ -176,3 +176,45 @@ fn trajectories_visit_a_well_as_often_as_rice_says() {
     let mut all = solution.report.measures.iter();
     assert!(all.all(|one| !one.name.starts_with("fast")));
 }
+
+#[test]
+fn sgcm_counts_visits_as_often_as_rice_says() {
+    let visits =
+        "right = \"x > 0\"\nhigh = \"x > 1.2\"\nband = \"-0.4 < x < 0.9\"\nhard = \"v > 1\"";
+    let mut ratios = Vec::new();
+    for (cells, seed) in [(30, 1), (36, 2), (48, 3)] {
+        let cells = format!(
+            "x = {{ from = -2.3, to = 2.3, count = {cells} }}\nv = {{ from = -2.7, to = 2.7, count = 40 }}"
+        );
+        let method = format!("method.kind=\"sgcm\" method.samples=200 method.seed={seed}");
+        let (_, solution) = solved(&text(&cells, visits), &method, None);
+        let rest = [
+            ("right", (0.0, FAR)),
+            ("high", (1.2, FAR)),
+            ("band", (-0.4, 0.9)),
+        ];
+        for (name, interval) in rest {
+            let [share, rate] = exact(interval);
+            let all = [
+                ("time_share", share),
+                ("visits", rate),
+                ("sojourn", share / rate),
+            ];
+            for (word, exact) in all {
+                let (value, error) = measure(&solution, &format!("{name}_{word}"));
+                assert!(error <= 0.08 * exact, "{name}_{word}: {error:e}");
+                ratios.push((value - exact) / error);
+            }
+        }
+        // Noise acts across this border.
+        let (share, error) = measure(&solution, "hard_time_share");
+        let normal = 0.5 * erfc(1.0 / (2.0 * 0.3_f64).sqrt());
+        assert!((share - normal).abs() <= 4.0 * error);
+        let mut measures = solution.report.measures.iter();
+        assert!(!measures.any(|one| one.name == "hard_visits"));
+    }
+    // Errors are standard errors of sampling and what else is known.
+    let squares: f64 = ratios.iter().map(|ratio| ratio * ratio).sum();
+    let size = (squares / ratios.len() as f64).sqrt();
+    assert!(size <= 1.5, "{size}: {ratios:?}");
+}

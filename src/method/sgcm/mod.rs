@@ -18,6 +18,7 @@ mod solved;
 mod source;
 mod steps;
 mod velocities;
+mod visits;
 mod widening;
 
 pub(crate) use cost::SgcmCost;

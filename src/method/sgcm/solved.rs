@@ -166,6 +166,7 @@ impl SgcmSource {
         // A comparison solves the same samples with both corrections; passages have paths of their own.
         if correction == self.correction() {
             self.add_passages(&mut reporter.report, point, Some(&spread), cancellation)?;
+            self.add_visits(&mut reporter.report, point, masses, doubts)?;
         }
         let solution = reporter.solution(
             densities,

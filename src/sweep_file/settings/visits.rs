@@ -13,9 +13,9 @@ pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, model: &Model) -> Vec
     let Some((first, _)) = draft.visits.first() else {
         return Vec::new();
     };
-    let refused = if draft.method.kind == MethodKind::Sgcm {
+    let refused = if draft.method.kind == MethodKind::Sgcm && model.phase_axis().is_some() {
         Some((
-            "visits are worked out by `generator` and `monte-carlo`, not by `sgcm`".to_owned(),
+            "visits of a forced system are worked out by `generator` and `monte-carlo`, not by `sgcm`".to_owned(),
             "set `method.kind = \"generator\"`, or `\"monte-carlo\"`",
         ))
     } else if model.axes.len() < 2 {
