@@ -7,7 +7,7 @@ use crate::density::{EstimatedDensity, Observable};
 use crate::topology::Signature;
 
 /// What finer cells show of one observable in a stretch.
-pub(super) struct Found {
+pub(super) struct StretchFindings {
     pub(super) rows: Vec<Located>,
     pub(super) points: Vec<Point>,
     /// Values of which finer cells do not tell either whether a pair is there.
@@ -19,7 +19,7 @@ pub(super) struct Found {
 /// What is counted in an observable at a value.
 pub(super) type Seen = (Observable, f64, Signature);
 
-impl Found {
+impl StretchFindings {
     /// What is counted at a value; `None` where it was not solved.
     pub(super) fn counted(&self, value: f64) -> Option<Signature> {
         counted(self.points.iter(), value, 0)

@@ -3,7 +3,7 @@
 //! Around rows that are not located; where the slope along a crest is level within its error, so that a pair of peak
 //! and saddle may be there; and where cells are wide, and so are not sure that nothing is there.
 
-use super::found::Found;
+use super::found::StretchFindings;
 use super::label::Located;
 use super::locate::has_wide_cells;
 use super::walk::Walk;
@@ -93,7 +93,7 @@ impl<'p> InDoubt<'p> {
     pub(super) fn settle(
         &mut self,
         (place, [lower, upper]): (usize, [f64; 2]),
-        by: &Found,
+        by: &StretchFindings,
         is_taken: bool,
     ) {
         let is_there = |one: &(usize, f64)| one.0 == place && (lower..=upper).contains(&one.1);

@@ -23,7 +23,7 @@ use super::{GeneratorError, GeneratorOptions};
 use crate::MAX_DIMENSION;
 use crate::space::CellSpace;
 use crate::system::{BoundQuantity, LANES, Lanes, System};
-use border::{Border, Closing, GridLine};
+use border::{Closing, GridLine, RegionCells};
 pub(crate) use border::{lagrange, lagrange_slopes};
 pub(crate) use ending::{AbsorbingGenerator, BorderValue, Ending, RateChange};
 
@@ -105,7 +105,7 @@ fn closed(
     cells: &[usize],
 ) -> Result<(AbsorbingGenerator, RateChange), GeneratorError> {
     let axes = &lines.axes;
-    let border = Border {
+    let border = RegionCells {
         system,
         space,
         level,
@@ -208,7 +208,7 @@ pub(crate) fn levels(space: &CellSpace, level: &BoundQuantity) -> Result<Vec<f64
 
 /// The matrix in the making.
 struct Assembly<'a> {
-    border: Border<'a>,
+    border: RegionCells<'a>,
     /// The generator, and what going on past the border in the second way changes of it.
     whole: RateChange,
     change: RateChange,

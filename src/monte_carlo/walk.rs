@@ -66,7 +66,7 @@ pub(super) struct Border<'a> {
 }
 
 /// The level of a region for a batch of states, with what noise does to it.
-struct Slopes {
+struct LevelSlopes {
     levels: Lanes,
     /// The root of the variance that noise gives the level per unit of time.
     speeds: Lanes,
@@ -124,7 +124,7 @@ impl<'a> Border<'a> {
     /// Levels of a batch of states, and the strength of the noise on each on the way to the border: levels over that
     /// are distances, in units of what noise does in a unit of time.
     pub(super) fn at(&self, states: &[Lanes], time_step: f64) -> (Lanes, Lanes) {
-        let Slopes {
+        let LevelSlopes {
             levels,
             speeds,
             ways,
@@ -159,7 +159,7 @@ impl<'a> Border<'a> {
         (levels, std::array::from_fn(mean))
     }
 
-    fn slopes(&self, states: &[Lanes]) -> Slopes {
+    fn slopes(&self, states: &[Lanes]) -> LevelSlopes {
         let levels = self.until.values(states);
         let mut squares = [0.0; LANES];
         let mut ways = Vec::with_capacity(self.noisy.len());
@@ -182,7 +182,7 @@ impl<'a> Border<'a> {
             }
             ways.push(way);
         }
-        Slopes {
+        LevelSlopes {
             levels,
             speeds: squares.map(f64::sqrt),
             ways,

@@ -15,12 +15,12 @@ pub(super) const FROM: usize = 0;
 pub(super) const TO: usize = 1;
 
 /// Numbers by a grid, with what errors of the steady state change of them.
-pub(super) struct Found {
+pub(super) struct OnWayNumbers {
     pub(super) on_grid: OnGrid,
     pub(super) changes: Vec<f64>,
 }
 
-impl Found {
+impl OnWayNumbers {
     pub(super) fn new(on_grid: OnGrid, changes: Vec<f64>) -> Self {
         Self { on_grid, changes }
     }
@@ -106,7 +106,7 @@ impl<'a> OnWay<'a> {
     }
 
     /// Density and current at the centres of the sweep's cells.
-    pub(super) fn fields(&self, asked: &FieldQuestion<'_>) -> Vec<Found> {
+    pub(super) fn fields(&self, asked: &FieldQuestion<'_>) -> Vec<OnWayNumbers> {
         let space = &self.found.space;
         let volumes = local_volumes(space);
         let per_volume = |unknowns: &[f64]| -> Vec<f64> {
@@ -125,7 +125,7 @@ impl<'a> OnWay<'a> {
                 .map(|change| change.unwrap_or(0.0));
             let changes = changes.collect();
             let (values, halved, border) = (at(&of.own), at(&of.halved), at(&of.border));
-            Found::new(
+            OnWayNumbers::new(
                 OnGrid {
                     values,
                     halved,

@@ -15,7 +15,7 @@ use super::field::{
     FieldQuestion, FieldTarget, OnGrid, PassageField, TOLERANCE, greatest_beside, on_three_grids,
     with_changes,
 };
-use super::on_way::{Changed, FROM, Found, OnWay, TO};
+use super::on_way::{Changed, FROM, OnWay, OnWayNumbers, TO};
 use super::source::{change_of_duration, source};
 use super::steady::{Steady, mass_in};
 use super::timed::WithError;
@@ -121,8 +121,8 @@ pub(crate) fn are_apart(
 
 /// What one grid gives: flux, rate and duration; the density, and the current along each axis.
 struct GridTransitions {
-    numbers: Found,
-    fields: Vec<Found>,
+    numbers: OnWayNumbers,
+    fields: Vec<OnWayNumbers>,
 }
 
 /// Transitions with what they are solved with.
@@ -226,7 +226,7 @@ impl Transitions<'_> {
         on_way: &OnWay<'_>,
         full: &AbsorbingGenerator,
         exits: &Exits<'_>,
-    ) -> Found {
+    ) -> OnWayNumbers {
         let [weights, others] = &full.weights;
         let dimension = self.asked.space.dimension();
         // Those that were in the first region last, outside of it: they are not zero on its border.
@@ -282,7 +282,7 @@ impl Transitions<'_> {
             border: known(bound(flux.border, mass.border, way.border)),
         };
         let steady = bound(flux.steady, mass.steady, way.steady);
-        Found::new(on_grid, steady.to_vec())
+        OnWayNumbers::new(on_grid, steady.to_vec())
     }
 
     /// A field with what it is inside the regions, where nothing is on its way.

@@ -20,7 +20,7 @@ use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions};
 use crate::system::{Enclosed, System};
 
 /// What one grid gives.
-pub(super) struct Solved {
+pub(super) struct GridNumbers {
     /// With all and with half of the dissipation.
     pub(super) both: [Numbers; 2],
     pub(super) lasting: Lasting,
@@ -55,7 +55,7 @@ impl Question<'_> {
         factor: f64,
         other: Option<&Lasting>,
         memory: &GridMemory,
-    ) -> Result<Solved, PassageError> {
+    ) -> Result<GridNumbers, PassageError> {
         let until = &self.passage.until;
         let regions = (until, self.passage.exits.as_slice());
         let found = cells(self.system.as_ref(), self.space, regions, factor)?;
@@ -114,7 +114,7 @@ impl Question<'_> {
                 self.passage.add(numbers, &groups, models);
             }
         }
-        Ok(Solved {
+        Ok(GridNumbers {
             both,
             lasting: Lasting::new(space, lasting, is_far_from_singular),
             work,

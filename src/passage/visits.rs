@@ -88,7 +88,7 @@ pub(crate) fn visits_and(
     } else {
         INTERVALS
     };
-    let border = |intervals| Border::new((system, cells, &angles), region, intervals);
+    let border = |intervals| BorderCrossings::new((system, cells, &angles), region, intervals);
     let (fine, rough) = (border(intervals), border(intervals / 2));
     if fine.is_endless || fine.crossings.is_empty() {
         let visits = Visits {
@@ -121,10 +121,13 @@ pub(crate) fn visits_and(
 
 /// Entries per unit of time over a border that is met at many places and at fewer, with an error; before it, what one
 /// unit of the steady state's unknowns in each cell adds to it.
-fn rate([fine, rough]: [&Border<'_>; 2], density: KnownDensity<'_>) -> (Vec<f64>, WithError) {
+fn rate(
+    [fine, rough]: [&BorderCrossings<'_>; 2],
+    density: KnownDensity<'_>,
+) -> (Vec<f64>, WithError) {
     let space = fine.space;
     let volumes = local_volumes(space);
-    let of_cells = |border: &Border<'_>, nodes: usize| {
+    let of_cells = |border: &BorderCrossings<'_>, nodes: usize| {
         let weights = border.weights(nodes).into_iter().zip(&volumes);
         weights.map(|(weight, volume)| weight / volume).collect()
     };
@@ -157,7 +160,7 @@ pub(crate) fn is_endless(
     let angles: Vec<bool> = space.axes().iter().map(Axis::is_closed).collect();
     let laid = space_of((system, space), region).ok().flatten();
     let cells = (system, laid.as_ref().unwrap_or(space), angles.as_slice());
-    Border::new(cells, region, 1).is_endless
+    BorderCrossings::new(cells, region, 1).is_endless
 }
 
 /// A state on the border.
@@ -168,7 +171,7 @@ struct Crossing {
 }
 
 /// All crossings of lines with the border of a region at which processes enter.
-struct Border<'a> {
+struct BorderCrossings<'a> {
     system: &'a dyn System,
     space: &'a CellSpace,
     /// Of each axis, whether its ends are one place.
@@ -178,7 +181,7 @@ struct Border<'a> {
     is_endless: bool,
 }
 
-impl<'a> Border<'a> {
+impl<'a> BorderCrossings<'a> {
     fn new(
         (system, space, angles): (&'a dyn System, &'a CellSpace, &'a [bool]),
         region: &'a BoundQuantity,

@@ -14,41 +14,51 @@ const NEAR: f64 = 1e-3;
 const DIGITS: usize = 8;
 
 /// Findings of one kind: the first is quoted, the others are counted.
-struct Gathered<'a> {
+struct Gathered<'a, P> {
     finding: &'a Finding,
-    /// First and last parameter value.
-    values: (f64, f64),
-    /// Number of parameter values.
+    /// The first and the last place at which it is found.
+    places: [P; 2],
+    /// Number of places.
     count: usize,
+}
+
+/// Findings by their kinds, those of one place together in their order; several of a kind at one place count once.
+fn gathered<'a, P: Copy + PartialEq>(
+    all: impl Iterator<Item = (P, &'a Vec<Finding>)>,
+) -> Vec<Gathered<'a, P>> {
+    let mut kinds: Vec<Gathered<'_, P>> = Vec::new();
+    for (place, finding) in all.flat_map(|(place, own)| own.iter().map(move |one| (place, one))) {
+        let mut known = kinds.iter_mut();
+        match known.find(|one| one.finding.kind() == finding.kind()) {
+            Some(kind) if kind.places[1] == place => {}
+            Some(kind) => {
+                kind.places[1] = place;
+                kind.count += 1;
+            }
+            None => kinds.push(Gathered {
+                finding,
+                places: [place; 2],
+                count: 1,
+            }),
+        }
+    }
+    kinds
 }
 
 /// The warnings of the nodes of a map: each kind of finding once, in the numbers of its first node.
 pub(crate) fn warnings_of_nodes(map: &RegimeMap) -> Vec<String> {
     let family = &map.subject.family;
-    let mut kinds: Vec<(&Finding, [f64; 2], usize)> = Vec::new();
-    for node in &map.nodes {
-        let mut own: Vec<&Finding> = Vec::new();
-        for finding in &node.findings {
-            if own.iter().all(|one| one.kind() != finding.kind()) {
-                own.push(finding);
-            }
-        }
-        for finding in own {
-            match (kinds.iter_mut()).find(|(known, ..)| known.kind() == finding.kind()) {
-                Some((.., count)) => *count += 1,
-                None => kinds.push((finding, node.values, 1)),
-            }
-        }
-    }
+    let nodes = map.nodes.iter();
+    let kinds = gathered(nodes.map(|node| (node.values, &node.findings)));
     let sides = map.plane.sides();
-    let sentence = |(finding, values, count): &(&Finding, [f64; 2], usize)| {
+    let sentence = |kind: &Gathered<'_, [f64; 2]>| {
         let place = [0, 1].map(|k| {
             let side = &sides[k];
-            let value = format_with_error(values[k], NEAR * side.length()).0;
+            let value = format_with_error(kind.places[0][k], NEAR * side.length()).0;
             format!("{} = {value}", side.parameter)
         });
-        let words = finding_in_words(family, finding);
-        let more = match count - 1 {
+        let words = finding_in_words(family, kind.finding);
+        let more = match kind.count - 1 {
             0 => String::new(),
             1 => " (and the like at 1 more node)".to_owned(),
             more => format!(" (and the like at {more} more nodes)"),
@@ -68,36 +78,13 @@ pub(crate) fn warnings_of_nodes(map: &RegimeMap) -> Vec<String> {
 
 /// The warnings of all points: each kind of finding once, in the numbers of its first.
 pub(crate) fn warnings_of_points(family: &Family, points: &[Point]) -> Vec<String> {
-    let mut kinds: Vec<Gathered<'_>> = Vec::new();
-    for point in points {
-        for finding in &point.report.findings {
-            let known = kinds
-                .iter_mut()
-                .find(|one| one.finding.kind() == finding.kind());
-            match known {
-                // Two surfaces at one value are one value.
-                Some(kind) if kind.values.1 == point.value => {}
-                Some(kind) => {
-                    kind.values.1 = point.value;
-                    kind.count += 1;
-                }
-                None => kinds.push(Gathered {
-                    finding,
-                    values: (point.value, point.value),
-                    count: 1,
-                }),
-            }
-        }
-    }
-    kinds.iter().map(|kind| kind.sentence(family)).collect()
-}
-
-impl Gathered<'_> {
-    fn sentence(&self, family: &Family) -> String {
-        let (first, last) = (told(family, self.values.0), told(family, self.values.1));
-        let words = finding_in_words(family, self.finding);
-        let parameter = family.parameter();
-        match self.count {
+    let parameter = family.parameter();
+    // Two surfaces at one value are one value.
+    let kinds = gathered((points.iter()).map(|point| (point.value, &point.report.findings)));
+    let sentence = |kind: &Gathered<'_, f64>| {
+        let [first, last] = kind.places.map(|value| told(family, value));
+        let words = finding_in_words(family, kind.finding);
+        match kind.count {
             1 => format!("{parameter} = {first}: {words}"),
             2 => format!("{parameter} = {first}: {words} (and the like at {last})"),
             count => format!(
@@ -105,7 +92,8 @@ impl Gathered<'_> {
                 count - 1
             ),
         }
-    }
+    };
+    kinds.iter().map(sentence).collect()
 }
 
 /// A value of the parameter without what rounding leaves: `-0.075` for -0.07500000000000001.

@@ -61,7 +61,7 @@ pub(crate) enum TangentFault {
 /// A system with the angle of small deviations from its paths as its last axis.
 pub(crate) struct Tangent {
     system: Arc<dyn System>,
-    slopes: Arc<Slopes>,
+    slopes: Arc<DriftDerivatives>,
     /// Those of the system; then, for each whose amplitude depends on the state, what it does to the angle, as a noise
     /// of its own: what both do together is not said here ([`Tangent::shared`]).
     noises: Vec<Noise>,
@@ -71,7 +71,7 @@ pub(crate) struct Tangent {
 }
 
 /// Derivatives at a state.
-struct Slopes {
+struct DriftDerivatives {
     tape: Tape,
     axes: usize,
     /// The axis of each noise.
@@ -86,7 +86,7 @@ struct Batch {
     b: Vec<Lanes>,
 }
 
-impl Slopes {
+impl DriftDerivatives {
     fn run(&self, states: &[Lanes]) -> Batch {
         let mut all = vec![[0.0; LANES]; self.axes * (self.axes + self.noise_axes.len())];
         self.tape.run(f64::NAN, &states[..self.axes], &mut all);
@@ -119,7 +119,7 @@ impl Slopes {
 
 /// Derivatives of drift and noises at a batch of states.
 pub(crate) struct StateSlopes<'a> {
-    slopes: &'a Slopes,
+    slopes: &'a DriftDerivatives,
     batch: Batch,
 }
 
@@ -175,7 +175,7 @@ impl Tangent {
     ) -> Self {
         let axes = system.dimension();
         let ratios = (0..axes * axes).map(|at| scales[at % axes] / scales[at / axes]);
-        let slopes = Arc::new(Slopes {
+        let slopes = Arc::new(DriftDerivatives {
             axes,
             noise_axes: noise_axes.to_vec(),
             ratios: ratios.collect(),
@@ -290,7 +290,7 @@ impl Tangent {
     }
 
     /// A rate of deviations in the direction of the last axis of a batch: what the derivatives of the drift make of it,
-    /// by rows, with the sine and cosine of the angle, and what each noise adds, as [`Slopes::pull`] gives it.
+    /// by rows, with the sine and cosine of the angle, and what each noise adds, as [`DriftDerivatives::pull`] gives it.
     fn rates(
         &self,
         states: &[Lanes],

@@ -111,7 +111,7 @@ fn without_noise(estimated: &EstimatedDensity) -> Option<&Axis> {
 }
 
 /// A place where the derivative of a marginal jumps or bends.
-struct Break {
+struct SlopeBreak {
     at: f64,
     /// Where the cells wholly below it end, and where those wholly above it begin.
     below: usize,
@@ -119,11 +119,11 @@ struct Break {
     is_bend: bool,
 }
 
-fn kinks(estimated: &EstimatedDensity, axis: &Axis) -> Vec<Break> {
+fn kinks(estimated: &EstimatedDensity, axis: &Axis) -> Vec<SlopeBreak> {
     let kinks = estimated.structure.kinks.iter();
     let found = kinks.filter_map(|kink| {
         let (below, above) = sides(axis, kink.at)?;
-        Some(Break {
+        Some(SlopeBreak {
             at: kink.at,
             below,
             above,
@@ -142,7 +142,7 @@ struct Smooth {
 
 impl Smooth {
     /// From one kink to the next about a place; what is on a kink counts with the side above.
-    fn about(axis: &Axis, kinks: &[Break], at: f64) -> Self {
+    fn about(axis: &Axis, kinks: &[SlopeBreak], at: f64) -> Self {
         let mut smooth = Self {
             cells: 0..axis.count(),
             ends: (axis.from(), axis.to()),
@@ -174,11 +174,11 @@ fn window(axis: &Axis, cell: usize, guess: f64) -> (usize, usize) {
 fn at_kink(
     axis: &Axis,
     values: &[f64],
-    kinks: &[Break],
+    kinks: &[SlopeBreak],
     cell: usize,
     kind: FeatureKind,
 ) -> Option<(f64, f64)> {
-    let is_near = |kink: &&Break| kink.below <= cell + 1 && kink.above >= cell;
+    let is_near = |kink: &&SlopeBreak| kink.below <= cell + 1 && kink.above >= cell;
     let kink = kinks.iter().find(is_near)?;
     let (below, above) = beside(axis, values, kinks, kink)?;
     let sign = sign(kind);
@@ -198,7 +198,12 @@ fn sign(kind: FeatureKind) -> f64 {
 }
 
 /// The polynomials on both sides of a kink.
-fn beside(axis: &Axis, values: &[f64], kinks: &[Break], kink: &Break) -> Option<(Local, Local)> {
+fn beside(
+    axis: &Axis,
+    values: &[f64],
+    kinks: &[SlopeBreak],
+    kink: &SlopeBreak,
+) -> Option<(Local, Local)> {
     let count = 2 * REACH - 1;
     let side = |cell: usize, first: usize| {
         let smooth =

@@ -37,7 +37,7 @@ pub(crate) fn plane_states(
         if number % 2 == 1 {
             across.reverse();
         }
-        let row = Row {
+        let row = CommonOfRows {
             source,
             detector,
             cancellation,
@@ -51,14 +51,14 @@ pub(crate) fn plane_states(
 }
 
 /// What the rows have in common.
-struct Row<'a> {
+struct CommonOfRows<'a> {
     source: &'a SourceInPlane<'a>,
     detector: &'a dyn Detector,
     cancellation: &'a Cancellation,
     done: &'a (dyn Fn() + Sync),
 }
 
-impl Row<'_> {
+impl CommonOfRows<'_> {
     fn solve(
         &self,
         plane: &Plane,

@@ -42,14 +42,14 @@ pub(super) const KIND: Kind = Kind {
 };
 
 /// Where surface and map of a row stand, in pixels.
-struct Row {
+struct PanelPlaces {
     /// Width of the row with its margins.
     width: f64,
     surface: f64,
     map: (f64, f64),
 }
 
-impl Row {
+impl PanelPlaces {
     /// `left` and `right` are what stands beside the map; the row is `given` wide, or as wide as its own.
     fn new(given: Option<f64>, tall: f64, (left, right): (f64, f64)) -> Self {
         let Some(width) = given else {
@@ -75,7 +75,7 @@ impl Row {
 /// The rows of a page, laid out.
 struct Rows<'a> {
     joint: &'a Joint<'a>,
-    row: Row,
+    row: PanelPlaces,
     surface_high: f64,
     across: Scale,
     up: Scale,
@@ -103,11 +103,11 @@ impl<'a> Rows<'a> {
         let vertical = |high: f64| Scale::vertical(look, y, high, second);
         // What stands beside the map hardly depends on its height: a first round measures it.
         let beside = (vertical(MAP).left(), right(&bars(MAP)));
-        let high = Row::new(given, tall, beside).map.1;
+        let high = PanelPlaces::new(given, tall, beside).map.1;
         let (up, bars) = (vertical(high), bars(high));
         let right = right(&bars);
-        let row = Row::new(given, tall, (up.left(), right));
-        let row = Row {
+        let row = PanelPlaces::new(given, tall, (up.left(), right));
+        let row = PanelPlaces {
             map: (row.map.0, high),
             ..row
         };

@@ -31,7 +31,7 @@ impl Graph {
         let contains = self.containing(&parts, by);
         self.build(|builder| {
             let zero = builder.constant(0.0);
-            let mut slopes = Slopes {
+            let mut slopes = KnownDerivatives {
                 of: PartMap::new(&parts, zero),
                 jumps: Vec::new(),
             };
@@ -51,12 +51,12 @@ impl Graph {
 }
 
 /// Derivatives of the parts so far.
-struct Slopes {
+struct KnownDerivatives {
     of: PartMap<Expression>,
     jumps: Vec<Expression>,
 }
 
-impl Slopes {
+impl KnownDerivatives {
     fn get(&self, part: Expression) -> Expression {
         self.of.get(part).unwrap_or(part)
     }

@@ -58,7 +58,7 @@ impl GridLine {
 }
 
 /// A region among cells.
-pub(super) struct Border<'a> {
+pub(super) struct RegionCells<'a> {
     pub(super) system: &'a dyn System,
     pub(super) space: &'a CellSpace,
     pub(super) level: &'a BoundQuantity,
@@ -70,7 +70,7 @@ pub(super) struct Border<'a> {
     pub(super) levels: Vec<f64>,
 }
 
-impl Border<'_> {
+impl RegionCells<'_> {
     /// Whether a cell is outside of the region.
     pub(super) fn keeps(&self, cell: usize) -> bool {
         self.levels[cell] >= 0.0

@@ -8,7 +8,7 @@ use crate::method::forcing::Forced;
 const SAFETY: f64 = 2.0;
 
 /// A steady state.
-pub(super) struct Solved<'a> {
+pub(super) struct ForcedState<'a> {
     /// The generator's unknowns, Σ = 1, and by how much those of the second scheme differ.
     pub(super) unknowns: &'a [f64],
     pub(super) change: &'a [f64],
@@ -21,7 +21,7 @@ pub(super) struct Solved<'a> {
 }
 
 /// Amplitude of the mean along an axis, with its error.
-pub(super) fn amplitude(forced: &Forced<'_>, solved: &Solved<'_>, axis: usize) -> (f64, f64) {
+pub(super) fn amplitude(forced: &Forced<'_>, solved: &ForcedState<'_>, axis: usize) -> (f64, f64) {
     let last = forced.space.axes()[forced.phase].mode_number();
     let nodes = forced.space.axes()[axis].nodes();
     let largest = nodes.iter().fold(0.0_f64, |most, x| most.max(x.abs()));

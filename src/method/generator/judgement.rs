@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use super::at_phases::{OverPeriod, moments_at_phases};
 use super::coarse::{COARSE, Coarseness, rough_relaxation};
-use super::forcing::{Solved, amplitude};
+use super::forcing::{ForcedState, amplitude};
 use super::last_modes::{LastModes, angles};
 use super::relaxation::Relaxation;
 use super::rotation::{Steady, rotation};
 use super::second::{Second, SecondSolve};
-use super::session::{FINE, GeneratorSession, PointSolve, ROUGH};
+use super::session::{FINE, FINER, GeneratorSession, PointSolve, ROUGH};
 use super::source::{METHOD, SHARP};
 use super::third::again;
 use super::trail::{self, Trail};
@@ -241,7 +241,7 @@ impl GeneratorSession {
             space: self.source.problem.space(),
             phase,
         };
-        let solved = Solved {
+        let solved = ForcedState {
             unknowns: &solved.steady.mass,
             change,
             error: solved.steady.info.error_estimate,
@@ -283,13 +283,24 @@ impl GeneratorSession {
         masses: &[f64],
     ) -> Result<(Vec<EstimatedDensity>, Second), MethodError> {
         let unknowns = &solved.steady.mass;
+        let mut left_of_change: Option<Vec<f64>> = None;
         let change = match (&solved.second, &solved.along) {
             (Some(_), Some((change, true))) if !self.source.sharp => change.clone(),
             (Some(second), along) => {
                 let expected = along.as_ref().map(|(change, _)| change.as_slice());
                 let solver = &mut self.solver;
                 let tolerance = if self.source.sharp { FINE } else { ROUGH };
-                solver.response(&second.product(unknowns), unknowns, expected, tolerance)?
+                let flow = second.product(unknowns);
+                let change = solver.response(&flow, unknowns, expected, tolerance)?;
+                match solved.left {
+                    Some(_) => {
+                        let finer = solver.response(&flow, unknowns, Some(&change), FINER)?;
+                        let both = finer.iter().zip(&change);
+                        left_of_change = Some(both.map(|(finer, change)| finer - change).collect());
+                        finer
+                    }
+                    None => change,
+                }
             }
             (None, _) => vec![0.0; unknowns.len()],
         };
@@ -315,6 +326,10 @@ impl GeneratorSession {
             if self.source.sharp {
                 one.negligible *= SHARP;
             }
+        }
+        if let Some(left) = &solved.left {
+            let masses = (masses, left_of_change.as_deref());
+            left.tell((&maps, problem), masses, &mut densities)?;
         }
         let solved = solved.second.is_some().then_some(SecondSolve {
             unknowns: changed,

@@ -8,6 +8,7 @@ mod basins;
 mod bends;
 mod coarse;
 mod cost;
+mod digits;
 mod forcing;
 mod judgement;
 mod jumps;

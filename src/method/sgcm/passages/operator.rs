@@ -67,7 +67,7 @@ pub(super) struct StartVector {
 }
 
 /// A row in the making.
-struct Row {
+struct GrowingRow {
     slots: Vec<u32>,
     touched: Vec<u32>,
     blocks: Vec<f64>,
@@ -75,7 +75,7 @@ struct Row {
     told: Vec<f64>,
 }
 
-impl Row {
+impl GrowingRow {
     fn new(cells: usize, width: usize, count: usize) -> Self {
         Self {
             slots: vec![NOWHERE; cells],
@@ -191,7 +191,7 @@ impl Operator {
             told: vec![Vec::with_capacity(rows * width); count],
             start: StartVector::new(map, counted, layout, weights),
         };
-        let mut row = Row::new(rows, width, count);
+        let mut row = GrowingRow::new(rows, width, count);
         for members in &layout.members {
             row.clear();
             for &member in members {
@@ -281,7 +281,7 @@ impl StartVector {
             weights: vec![0.0; rows * width],
             told: vec![0.0; count],
         };
-        let (mut row, mut total) = (Row::new(rows, width, count), 0.0);
+        let (mut row, mut total) = (GrowingRow::new(rows, width, count), 0.0);
         let one = [vec![1.0], vec![0.0; width - 1]].concat();
         for column in &map.starts {
             row.clear();
