@@ -198,8 +198,7 @@ impl LineRates {
     /// Number of entries of a column.
     fn entries(&self, place: &Coordinates) -> usize {
         let sides = self.sides(place);
-        let across = sides.iter().map(|side| self.entries_of_side(place, side));
-        self.entries_of_star(place) + across.sum::<usize>()
+        self.entries_of_star(place) + self.entries_of_sides(place, &sides)
     }
 
     /// Number of cells on the lines through a cell that its column reaches.
