@@ -29,6 +29,8 @@ pub(crate) struct LineRates {
     pub(super) strides: Vec<usize>,
     /// One an axis.
     pub(super) rates: Vec<AxisRates>,
+    /// Whether there are planes or walls whose fluxes something is added for ([`LineRates::sides`]).
+    pub(super) has_sides: bool,
     cells: usize,
 }
 
@@ -38,6 +40,7 @@ impl LineRates {
         Self {
             strides: strides(&axes),
             rates: Vec::with_capacity(axes.len()),
+            has_sides: axes.iter().any(AxisGeometry::has_sides),
             axes,
             cells,
         }

@@ -157,6 +157,12 @@ impl AxisGeometry {
         faces.filter(move |&face| face == cell || face == cell + 1)
     }
 
+    /// Whether something is added for what fluxes through walls or breaks leave out.
+    pub(super) fn has_sides(&self) -> bool {
+        let is_at_wall = self.along_walls.iter().any(Option::is_some);
+        is_at_wall || self.breaks.iter().any(|at| at.slope.is_some())
+    }
+
     /// As [`Self::new`], with all or half of the dissipation of the fluxes, for what changes in time.
     pub(super) fn damped(
         system: &dyn System,

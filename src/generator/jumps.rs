@@ -37,6 +37,9 @@ impl LineRates {
     /// There are none for nearly all cells, and two where planes are near each other. Where planes across several axes
     /// meet at which drifts jump, those of the first one count.
     pub(super) fn sides(&self, place: &Coordinates) -> Vec<Side> {
+        if !self.has_sides {
+            return Vec::new();
+        }
         let at_jumps = |(axis, geometry): (usize, &AxisGeometry)| -> Vec<Side> {
             let breaks = geometry.breaks.iter();
             let sides = breaks.filter_map(|at| side_of_jump(geometry, at, (axis, place[axis])));
