@@ -37,8 +37,9 @@ pub fn assemble(
     assemble_within(system, system, space, options)
 }
 
-/// As [`assemble`], with all or half of the dissipation of advective fluxes. What the two differ by is an error of
-/// functions of the generator, its eigenvalues among them, to first order.
+/// As [`assemble`], with all or half of the dissipation of advective fluxes, for what changes in time: what makes good
+/// the flux through walls is that of a steady state, and is left out. What the two differ by is an error of functions
+/// of the generator, its eigenvalues among them, to first order.
 ///
 /// # Errors
 /// As [`assemble`].
@@ -168,7 +169,7 @@ fn axis_fluxes<const N: usize>(
             sampler.sample(&first[axis].nodes, &quadrature)?;
             for (other, geometry) in first.iter().enumerate() {
                 let cell = cell_on(first, strides, axis, number, other);
-                if let Some(face) = geometry.break_beside(cell).filter(|_| other != axis) {
+                for face in geometry.turns_beside(cell).filter(|_| other != axis) {
                     let (plane, nodes) = (geometry.edges[face], &geometry.nodes);
                     let beside = [nodes[face - 1], nodes[face]];
                     sampler.correct((other, plane), beside, &first[axis].nodes, &quadrature)?;

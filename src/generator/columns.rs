@@ -29,6 +29,8 @@ pub(crate) struct LineRates {
     pub(super) strides: Vec<usize>,
     /// One an axis.
     pub(super) rates: Vec<AxisRates>,
+    /// Whether there are planes or walls whose fluxes something is added for ([`LineRates::sides`]).
+    pub(super) has_sides: bool,
     cells: usize,
 }
 
@@ -38,6 +40,7 @@ impl LineRates {
         Self {
             strides: strides(&axes),
             rates: Vec::with_capacity(axes.len()),
+            has_sides: axes.iter().any(AxisGeometry::has_sides),
             axes,
             cells,
         }
@@ -198,8 +201,7 @@ impl LineRates {
     /// Number of entries of a column.
     fn entries(&self, place: &Coordinates) -> usize {
         let sides = self.sides(place);
-        let across = sides.iter().map(|side| self.entries_of_side(place, side));
-        self.entries_of_star(place) + across.sum::<usize>()
+        self.entries_of_star(place) + self.entries_of_sides(place, &sides)
     }
 
     /// Number of cells on the lines through a cell that its column reaches.

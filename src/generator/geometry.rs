@@ -4,6 +4,7 @@ use super::GeneratorOptions;
 use super::modes::ModeAxis;
 use super::scheme::{AdvectiveScheme, DAMPING_BESIDE_MODES, Dissipation, REACH, Window};
 use super::smooth::{EVEN_OFFSETS, GAUSS};
+use super::turns::{Turn, turn_at};
 use crate::numerics::sort_descending;
 use crate::space::{Axis, CellSpace, Series};
 use crate::system::{System, closed_ends};
@@ -60,12 +61,17 @@ pub(super) struct AxisGeometry {
     pub(super) ends: [End; 2],
     /// One a face, ends included (theirs are empty).
     pub(super) stencils: Vec<FaceStencil>,
+    /// At the lower and upper end, if it is a wall that reflects and the scheme makes good what the flux through it
+    /// leaves out: what of the rates along other axes, in the cells from the wall on, is added to those of the first.
+    pub(super) along_walls: [Option<[f64; REACH]>; 2],
     /// Whether fluxes beside a wall depend on the scheme in their derivatives too.
     pub(super) has_wall_stencils: bool,
     /// Cells on either side that an entry of the matrix may reach.
     pub(super) reach: usize,
     /// Inner faces on which a derivative of the density jumps, past which no stencil of a flux reaches.
     pub(super) breaks: Vec<Break>,
+    /// Inner faces of an axis with noise on which drifts along other axes bend, and the one along it does not jump.
+    pub(super) bends: Vec<usize>,
     /// Of each face of an axis with noise, whether its stencil reaches across a switching surface: there the density
     /// has a kink, and its product with the fitted exponential has none.
     pub(super) is_across: Vec<bool>,
@@ -94,6 +100,10 @@ impl AxisGeometry {
             true => surface_faces(system, index, axis),
             false => Vec::new(),
         };
+        let bends = kinks.iter().copied().filter(|&face| {
+            let found = turn_at(system, (index, face), space);
+            found.own != Turn::Jump && found.others == Turn::Bend
+        });
         let is_across = |face: usize| kinks.iter().any(|kink| kink.abs_diff(face) < REACH);
         let end = |wall: bool| if wall { End::Wall } else { End::Open };
         let ranges = space.ranges();
@@ -101,10 +111,13 @@ impl AxisGeometry {
             .map(|face| stencil(scheme, damping, (face, count), &breaks))
             .collect();
         let walls = reflecting_walls(system, index, axis);
-        for (is_wall, face) in walls.into_iter().zip([1, count.saturating_sub(1)]) {
+        let mut along_walls = [None; 2];
+        let faces = [1, count.saturating_sub(1)];
+        for ((is_wall, face), along) in walls.into_iter().zip(faces).zip(&mut along_walls) {
             let is_smooth = count >= 2 * REACH && !is_across(face);
             if let Some(found) = scheme.beside_wall().filter(|_| is_wall && is_smooth) {
                 let found = if face == 1 { found } else { found.mirrored() };
+                *along = Some(found.along);
                 stencils[face] = FaceStencil {
                     central: found.central,
                     dissipation: found.dissipation.map(|weight| damping * weight),
@@ -122,6 +135,7 @@ impl AxisGeometry {
             face_widths: (0..=count).map(|face| axis.edge_stretch(face)).collect(),
             ends: closed_ends(system, index, &ranges).map(end),
             stencils,
+            along_walls,
             has_wall_stencils: walls.contains(&true),
             reach: match (axis.is_modes(), noisy) {
                 (true, _) => count - 1,
@@ -130,18 +144,26 @@ impl AxisGeometry {
                 (false, false) => scheme.reach(),
             },
             breaks,
+            bends: bends.collect(),
             is_across: (0..=count).map(is_across).collect(),
             modes: ModeAxis::new(axis),
         }
     }
 
-    /// The break that a cell has on one of its faces.
-    pub(super) fn break_beside(&self, cell: usize) -> Option<usize> {
-        let mut breaks = self.breaks.iter().map(|one| one.face);
-        breaks.find(|&face| face == cell || face == cell + 1)
+    /// Faces of a cell on which a derivative of the flux along the axis jumps.
+    pub(super) fn turns_beside(&self, cell: usize) -> impl Iterator<Item = usize> {
+        let breaks = self.breaks.iter().map(|one| one.face);
+        let faces = breaks.chain(self.bends.iter().copied());
+        faces.filter(move |&face| face == cell || face == cell + 1)
     }
 
-    /// As [`Self::new`], with all or half of the dissipation of the fluxes.
+    /// Whether something is added for what fluxes through walls or breaks leave out.
+    pub(super) fn has_sides(&self) -> bool {
+        let is_at_wall = self.along_walls.iter().any(Option::is_some);
+        is_at_wall || self.breaks.iter().any(|at| at.slope.is_some())
+    }
+
+    /// As [`Self::new`], with all or half of the dissipation of the fluxes, for what changes in time.
     pub(super) fn damped(
         system: &dyn System,
         index: usize,
@@ -150,6 +172,7 @@ impl AxisGeometry {
         dissipation: Dissipation,
     ) -> Self {
         let mut geometry = Self::new(system, index, space, options.scheme);
+        geometry.along_walls = [None; 2];
         if dissipation == Dissipation::Half {
             let weights = geometry.stencils.iter_mut();
             let weights = weights.flat_map(|one| &mut one.dissipation);
@@ -228,13 +251,15 @@ fn breaks(
         .into_iter()
         .filter(|face| (REACH..=axis.count().saturating_sub(REACH)).contains(face))
         .filter_map(|face| {
-            let (sharpness, jumps) = sharpness(system, (index, face), space)?;
+            let found = turn_at(system, (index, face), space);
+            let jumps = found.others == Turn::Jump;
             let at = Break {
                 face,
                 slope_jumps: jumps,
                 slope: scheme.slope().filter(|_| jumps),
             };
-            Some((sharpness, at))
+            let is_break = found.own == Turn::Smooth && found.others != Turn::Smooth;
+            is_break.then_some((found.sharpness, at))
         })
         .collect();
     sort_descending(&mut found, |one| one.0);
@@ -246,51 +271,6 @@ fn breaks(
     }
     kept.sort_unstable_by_key(|one| one.face);
     kept
-}
-
-/// Distance from a face at which slopes on either side are taken, in widths of its cell, and the change of a drift over
-/// a cell that is a smaller share of it is smooth.
-const ASIDE: f64 = 1e-4;
-const SMOOTH: f64 = 1e-2;
-
-/// By how much the drift along other axes changes its slope at a face, in changes over a cell; a jump counts for more.
-/// At the middle of the other axes and at two places aside. With it comes whether a drift jumps. `None` where all is
-/// smooth, and where the drift along the axis is not.
-fn sharpness(
-    system: &dyn System,
-    (index, face): (usize, usize),
-    space: &CellSpace,
-) -> Option<(f64, bool)> {
-    let axis = &space.axes()[index];
-    let step = ASIDE * axis.width(face);
-    let mut sharpest: Option<f64> = None;
-    let mut jumps = false;
-    for share in [0.31, 0.5, 0.73] {
-        let ends = space.axes().iter();
-        let mut state: Vec<f64> = ends
-            .map(|one| one.from() + share * (one.to() - one.from()))
-            .collect();
-        let [far_below, below, above, far_above] = [-2.0, -1.0, 1.0, 2.0].map(|steps| {
-            state[index] = axis.edges()[face] + steps * step;
-            system.drift_at(0.0, &state)
-        });
-        for component in 0..below.len() {
-            let of = |values: &[f64]| values[component];
-            let slopes = [of(&below) - of(&far_below), of(&far_above) - of(&above)];
-            let jump = 2.0 * (of(&above) - of(&below)) - (of(&far_above) - of(&far_below));
-            let change = ((slopes[1] - slopes[0]).abs() + jump.abs()) / ASIDE;
-            let size = of(&below).abs() + (slopes[0].abs() + slopes[1].abs()) / ASIDE;
-            match (change > SMOOTH * size, component == index) {
-                (true, true) => return None,
-                (true, false) => {
-                    sharpest = Some(sharpest.map_or(change, |one| one.max(change)));
-                    jumps |= jump.abs() > SMOOTH * size;
-                }
-                (false, _) => {}
-            }
-        }
-    }
-    Some((sharpest?, jumps))
 }
 
 /// Share of the upwind scheme's dissipation that the cells of a space need.

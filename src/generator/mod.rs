@@ -14,7 +14,8 @@
 //! | fluxes along a grid line: fitted and advected drift | `line.rs`, `smooth.rs` |
 //! | rates along an axis of modes | `modes.rs` |
 //! | the matrix | `assemble.rs`, `columns.rs` |
-//! | what fluxes through a plane at which a force jumps leave out | `jumps.rs` |
+//! | what fluxes through a wall, or a plane at which a force jumps, leave out | `jumps.rs` |
+//! | whether drifts bend or jump at a face | `turns.rs` |
 //! | a noise that moves an axis and an angle at once | `shared_noise.rs` |
 //! | decay of the last harmonics of an angle without noise | `spectral_viscosity.rs` |
 //! | the matrix of a process that ends in a region | `absorbing.rs` |
@@ -48,6 +49,7 @@ mod shared_noise;
 mod smooth;
 mod spectral_viscosity;
 mod spurious;
+mod turns;
 
 pub(crate) use absorbing::{
     AbsorbingGenerator, Closure, Ending, RateChange, assemble_absorbing, assemble_with_changes,

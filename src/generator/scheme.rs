@@ -124,7 +124,8 @@ impl AdvectiveScheme {
     /// coordinate, of the four cells from the wall on; mirrored beside a wall above it. The flux f is zero at the wall,
     /// so that f - f''/24, which differences of fluxes want, follows from its values at this face and the next one:
     /// 13/12 of the former less a twenty-fourth of the latter. The central scheme of fourth order does without, and
-    /// takes the means and differences of the two cells: what both schemes share is no part of the stated error.
+    /// takes the means and differences of the two cells: what both schemes share is no part of the stated error. So it
+    /// does without what makes good the flux through the wall (`jumps`).
     pub(super) fn beside_wall(self) -> Option<WallStencil> {
         let dissipation = match self {
             Self::Central4 => return None,
@@ -136,6 +137,7 @@ impl AdvectiveScheme {
             central: [0.0, 0.0, 131.0, 381.0, -139.0, 27.0].map(|weight| weight / 384.0),
             dissipation,
             derivative: [0.0, 0.0, -23.0, 21.0, 3.0, -1.0].map(|weight| weight / 24.0),
+            along: [2.0, -3.0, 1.0].map(|weight| weight / 24.0),
         })
     }
 
@@ -154,6 +156,8 @@ pub(super) struct WallStencil {
     pub(super) central: Window,
     pub(super) dissipation: Window,
     pub(super) derivative: Window,
+    /// What of the rates along other axes, in the cells from the wall on, is added to those of the cell at the wall.
+    pub(super) along: [f64; REACH],
 }
 
 impl WallStencil {
@@ -164,6 +168,7 @@ impl WallStencil {
             central: mirrored(self.central),
             dissipation: turned(self.dissipation),
             derivative: turned(self.derivative),
+            along: self.along,
         }
     }
 }

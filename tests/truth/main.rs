@@ -7,6 +7,7 @@ mod common;
 
 mod angles;
 mod angular_fluctuations;
+mod circulation;
 mod coloured_noise;
 mod contacts;
 mod exchanged_peaks;
