@@ -16,7 +16,7 @@ use std::sync::atomic::Ordering;
 
 use super::bands::widen;
 use super::counting::{CountingSource, Solves};
-use super::found::Found;
+use super::found::StretchFindings;
 use super::in_doubt::{InDoubt, Watched};
 use super::label::{Label, Located};
 use super::live::{FACTORS, refined, work_of_factors};
@@ -128,7 +128,7 @@ impl<'p, 'a> Closer<'p, 'a> {
         mut stretch: [f64; 2],
         times: u8,
         rows: &[Located],
-    ) -> Option<(CloserLook, Found)> {
+    ) -> Option<(CloserLook, StretchFindings)> {
         for _ in 0..2 {
             let found = self.swept(of, stretch, times)?;
             let ends = self.ends(&found, of, stretch);
@@ -145,7 +145,7 @@ impl<'p, 'a> Closer<'p, 'a> {
     /// What is believed of what finer cells show of a stretch, between ends at which they are right.
     fn believed(
         &mut self,
-        found: &Found,
+        found: &StretchFindings,
         (of, stretch, ends): (Watched, [f64; 2], [Signature; 2]),
         rows: &[Located],
     ) -> Option<CloserLook> {
@@ -172,7 +172,7 @@ impl<'p, 'a> Closer<'p, 'a> {
     /// there: finer ones are believed that are not, or that count what others have counted before.
     fn ends(
         &mut self,
-        found: &Found,
+        found: &StretchFindings,
         (place, observable): Watched,
         stretch: [f64; 2],
     ) -> Option<[Signature; 2]> {
@@ -240,7 +240,12 @@ impl<'p, 'a> Closer<'p, 'a> {
     }
 
     /// What finer cells show in a stretch; `None` where there are none, or no work is left for them.
-    fn swept(&mut self, (_, observable): Watched, stretch: [f64; 2], times: u8) -> Option<Found> {
+    fn swept(
+        &mut self,
+        (_, observable): Watched,
+        stretch: [f64; 2],
+        times: u8,
+    ) -> Option<StretchFindings> {
         let steps = ((stretch[1] - stretch[0]) / self.span.step).ceil() as usize;
         let values = evenly_spaced((stretch[0], stretch[1]), FEWEST.max(steps + 1));
         let planned = values.len() as f64 + BEYOND;
@@ -284,7 +289,7 @@ impl<'p, 'a> Closer<'p, 'a> {
             Label::Bifurcation(row) => Some(*row),
             _ => None,
         });
-        Some(Found {
+        Some(StretchFindings {
             rows: rows.collect(),
             unsure: walk.unsure.iter().map(|one| one.1).collect(),
             is_wide: walk.points.iter().any(has_wide_cells),

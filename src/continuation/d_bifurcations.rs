@@ -13,22 +13,32 @@ use crate::system::{Family, MeasureLevel};
 /// Halvings of a bracket at most: more than there are digits.
 const HALVINGS: usize = 200;
 
+/// Values at which the exponent is looked at along a sweep, at least: two zeros may lie between two of its own.
+const LOOKED_AT: usize = 256;
+
 /// Share of the bracket over which the slope at a zero is taken.
 const SLOPE: f64 = 1e-3;
 
 /// Rounding of a value of the parameter, relative to it.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// All zeros between neighbouring points, ascending and unnumbered.
+/// All zeros along the points of a sweep, ascending and unnumbered.
 pub(super) fn d_bifurcations(
     points: &[Point],
     family: &Family,
     tolerance: f64,
 ) -> Vec<LevelCrossing> {
     let exponent = |value: f64| of_family(family, value).and_then(Result::ok);
-    let known = points
-        .iter()
-        .filter_map(|point| Some((point.value, exponent(point.value)?)));
+    if family.questions.fixed_point.is_none() {
+        return Vec::new();
+    }
+    let parts = LOOKED_AT.div_ceil(points.len().saturating_sub(1).max(1));
+    let inside = points.windows(2).flat_map(|pair| {
+        let [from, to] = [pair[0].value, pair[1].value];
+        (0..parts).map(move |part| from + (to - from) * part as f64 / parts as f64)
+    });
+    let values = inside.chain(points.last().map(|point| point.value));
+    let known = values.filter_map(|value| Some((value, exponent(value)?)));
     let known: Vec<(f64, Exponent)> = known.collect();
     let between = |pair: &[(f64, Exponent)]| {
         let [(lower, below), (upper, above)] = [pair[0], pair[1]];

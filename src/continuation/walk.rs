@@ -26,6 +26,9 @@ const MOST_EXTRA_A_VALUE: usize = 10;
 /// asks for more comes and goes with the cells.
 const MOST_EXTRA_CELLS: usize = 8_000_000;
 const LEAST_EXTRA_A_VALUE: usize = 4;
+/// Guesses at least, of values between others at which something may come and go; and as many as given values. On few
+/// cells readings that are not sure dip everywhere, and guesses would not end before values are as near as wanted.
+const LEAST_GUESSES: usize = 60;
 
 /// The solved values of a stretch of a sweep.
 pub(super) struct Walk<'a> {
@@ -139,16 +142,21 @@ impl<'a> Walk<'a> {
     fn narrow(&mut self, most: usize) -> Result<(), SweepError> {
         let levels = asked_of(&self.source.subject().family);
         let mut left = most;
+        let mut guesses = LEAST_GUESSES.max(self.points.len());
         while left > 0 && !self.work.has_ended() {
-            let mut wanted = Search {
+            let search = Search {
                 points: &self.points,
                 flanks: &self.flanks,
                 detector: self.detector,
                 levels: &levels,
                 span: self.span,
                 options: &self.options,
+            };
+            let mut wanted = search.values();
+            if wanted.is_empty() && guesses > 0 {
+                wanted.extend(search.guess());
+                guesses -= 1;
             }
-            .values();
             if wanted.is_empty() {
                 break;
             }

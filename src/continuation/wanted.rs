@@ -30,10 +30,6 @@ impl Search<'_> {
             .filter(|point| !point.detections.is_empty())
             .collect();
         let tolerance = self.options.tolerance;
-        let dip = dips::at_centre(&solved, tolerance).or_else(|| self.dip_on_flanks());
-        if let Some(dip) = dip.filter(|value| self.is_new(value)) {
-            return vec![dip];
-        }
         let at_centre = self.at_centre(&solved);
         let wanted = match at_centre.is_empty() {
             true => self.in_changes(&solved),
@@ -47,6 +43,16 @@ impl Search<'_> {
                 .collect();
         }
         self.one_a_gap(wanted)
+    }
+
+    /// A value at which two changes may lie between two values that show neither.
+    pub(super) fn guess(&self) -> Option<f64> {
+        let solved: Vec<&Point> = (self.points.iter())
+            .filter(|point| !point.detections.is_empty())
+            .collect();
+        let dip = dips::at_centre(&solved, self.options.tolerance);
+        dip.or_else(|| self.dip_on_flanks())
+            .filter(|value| self.is_new(value))
     }
 
     /// Whether a value is yet to be solved: asked for again, it would give nothing new.

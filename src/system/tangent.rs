@@ -290,7 +290,7 @@ impl Tangent {
     }
 
     /// A rate of deviations in the direction of the last axis of a batch: what the derivatives of the drift make of it,
-    /// by rows, with the sine and cosine of the angle, and what each noise adds, as [`DriftDerivatives::pull`] gives it.
+    /// by rows, with the sine and cosine of the angle, and what each noise adds ([`DriftDerivatives::pull`]).
     fn rates(
         &self,
         states: &[Lanes],

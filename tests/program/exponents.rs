@@ -29,6 +29,25 @@ draw = ["measures_exponent"]
 "#;
 
 #[test]
+fn stability_that_comes_and_goes_between_two_values_has_two_rows() {
+    let room = Room::new();
+    // The exponent is a - 0.005 with a = 0.015 - (q - 0.25)²: above zero from 0.15 to 0.35, at no value of the sweep.
+    let text = "[system.equations]\nx = \"(0.015 - (q-0.25)^2) x - x^3\"\n[system.noise]\nx = \"0.1 x\"\n\
+                interpretation = \"ito\"\n[system.parameters]\nq = 0.0\n[sweep]\nparameter = \"q\"\nfrom = -1.0\n\
+                to = 1.0\npoints = 5\n[cells]\nx = { from = -1, to = 1, count = 50 }\n\
+                [exponent]\nkind = \"fixed-point\"\n";
+    room.write("a.toml", text);
+    room.run("sweep a.toml --out run");
+    let table = room.table("run/bifurcations.csv");
+    let rows = table.0.iter().filter(|row| row["label"].starts_with("DB"));
+    let values: Vec<f64> = rows.map(|row| row.number("value")).collect();
+    let exact = [0.15, 0.35];
+    assert_eq!(values.len(), 2, "{values:?}");
+    let off = values.iter().zip(exact).map(|(a, b)| (a - b).abs());
+    assert!(off.fold(0.0, f64::max) < 1e-12, "{values:?}");
+}
+
+#[test]
 fn the_state_of_rest_of_an_oscillator_loses_its_stability_where_the_closed_form_says() {
     let room = Room::new();
     room.write("a.toml", OSCILLATOR);

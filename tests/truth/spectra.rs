@@ -562,3 +562,46 @@ of = ["v"]
             .all(|row| !matches!(row, Label::Level(_)))
     );
 }
+
+/// The spectrum of x² of a linear oscillator has a maximum above zero at q = -1, which vanishes at q = -0.88376 (zero of
+/// the largest local maximum of d ln S / d ln ω of the closed form). At the next given value that slope has no local
+/// maximum at all.
+#[test]
+fn a_line_that_is_lost_between_two_values_has_a_row() {
+    let text = r#"
+[system.equations]
+x = "y"
+y = "(-1.165 - 0.177 q) x - (1.594 + 1.028 q) y"
+[system.noise]
+y = "0.999"
+[system.parameters]
+q = 0.0
+[sweep]
+parameter = "q"
+from = -1.0
+to = 1.0
+points = 5
+[cells]
+x = { from = -4.4, to = 4.4, count = 41 }
+y = { from = -4.4, to = 4.4, count = 41 }
+[detect]
+marginals = ["x"]
+joint = []
+[watch]
+w2 = "x^2"
+[spectrum]
+of = ["w2"]
+[locate]
+relative_tolerance = 1e-3
+"#;
+    let (_, result) = crate::common::sweeps::swept(text, "");
+    let rows = result.labels.iter().filter_map(|row| match row {
+        Label::Level(row) => Some(row),
+        _ => None,
+    });
+    let rows: Vec<_> = rows.collect();
+    let [row] = rows.as_slice() else {
+        panic!("{} rows", rows.len());
+    };
+    assert!((row.value + 0.88376).abs() <= row.error && row.error < 0.02);
+}

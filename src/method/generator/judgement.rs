@@ -11,7 +11,7 @@ use super::last_modes::{LastModes, angles};
 use super::relaxation::Relaxation;
 use super::rotation::{Steady, rotation};
 use super::second::{Second, SecondSolve};
-use super::session::{FINE, FINER, GeneratorSession, PointSolve, ROUGH};
+use super::session::{FINE, GeneratorSession, PointSolve, ROUGH};
 use super::source::{METHOD, SHARP};
 use super::third::again;
 use super::trail::{self, Trail};
@@ -283,24 +283,13 @@ impl GeneratorSession {
         masses: &[f64],
     ) -> Result<(Vec<EstimatedDensity>, Second), MethodError> {
         let unknowns = &solved.steady.mass;
-        let mut left_of_change: Option<Vec<f64>> = None;
         let change = match (&solved.second, &solved.along) {
             (Some(_), Some((change, true))) if !self.source.sharp => change.clone(),
             (Some(second), along) => {
                 let expected = along.as_ref().map(|(change, _)| change.as_slice());
                 let solver = &mut self.solver;
                 let tolerance = if self.source.sharp { FINE } else { ROUGH };
-                let flow = second.product(unknowns);
-                let change = solver.response(&flow, unknowns, expected, tolerance)?;
-                match solved.left {
-                    Some(_) => {
-                        let finer = solver.response(&flow, unknowns, Some(&change), FINER)?;
-                        let both = finer.iter().zip(&change);
-                        left_of_change = Some(both.map(|(finer, change)| finer - change).collect());
-                        finer
-                    }
-                    None => change,
-                }
+                solver.response(&second.product(unknowns), unknowns, expected, tolerance)?
             }
             (None, _) => vec![0.0; unknowns.len()],
         };
@@ -326,10 +315,6 @@ impl GeneratorSession {
             if self.source.sharp {
                 one.negligible *= SHARP;
             }
-        }
-        if let Some(left) = &solved.left {
-            let masses = (masses, left_of_change.as_deref());
-            left.tell((&maps, problem), masses, &mut densities)?;
         }
         let solved = solved.second.is_some().then_some(SecondSolve {
             unknowns: changed,

@@ -8,7 +8,6 @@ mod basins;
 mod bends;
 mod coarse;
 mod cost;
-mod digits;
 mod forcing;
 mod judgement;
 mod jumps;

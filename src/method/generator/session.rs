@@ -9,7 +9,6 @@
 use std::sync::Arc;
 
 use super::GeneratorSource;
-use super::digits::{Left, finish};
 use super::largest_exponent::add_largest_exponent;
 use super::one_axis;
 use super::passages::{add_passages, at_nodes};
@@ -37,9 +36,6 @@ pub(super) const ROUGH: f64 = 1e-2;
 /// The same where low peaks decide: what a difference may be off by is spread over all cells, and must be small against
 /// their heights.
 pub(super) const FINE: f64 = 1e-6;
-
-/// The same once more, for what that has left.
-pub(super) const FINER: f64 = 1e-9;
 
 /// Distance in L1 of the unknowns that were expected to those that were found up to which a difference between schemes
 /// that was worked out for the first is that of the second, to [`ROUGH`].
@@ -72,8 +68,6 @@ pub(super) struct PointSolve {
     /// By how much the second scheme's unknowns differ, where that came along with the solve, and whether the unknowns
     /// were expected well enough for that to be it.
     pub(super) along: Option<(Vec<f64>, bool)>,
-    /// What iterations have left, where low values decide.
-    pub(super) left: Option<Left>,
     /// By how much the unknowns of a third scheme differ, where means of formulas want it.
     pub(super) third: Option<Vec<f64>>,
 }
@@ -271,18 +265,8 @@ impl GeneratorSession {
         if solver.factorisations() > factorisations {
             self.stand.factorised = Some(value);
         }
-        let (mut steady, answer) = steady?;
+        let (steady, answer) = steady?;
         self.stand.solved = Some(value);
-        let has_cells = source
-            .problem
-            .space()
-            .axes()
-            .iter()
-            .all(|axis| !axis.is_modes());
-        let left = match source.sharp && has_cells && steady.info.converged {
-            true => finish(solver, matrix, &mut steady)?,
-            false => None,
-        };
         let near = guess.is_some_and(|guess| distance(guess, &steady.mass) <= NEAR);
         Ok(PointSolve {
             value,
@@ -291,7 +275,6 @@ impl GeneratorSession {
             escape: generator.escape,
             second,
             along: answer.map(|answer| (answer, near)),
-            left,
             third: None,
         })
     }
