@@ -563,7 +563,7 @@ of = ["v"]
     );
 }
 
-/// The spectrum of x² of a linear oscillator has a maximum above zero at q = -1. It vanishes at q = -0.88376, the zero of
+/// The spectrum of x² of a linear oscillator has a maximum above zero at q = -1. It vanishes at -0.88376, the zero of
 /// the largest local maximum of d ln S / d ln ω of the closed form. At the next given value that slope has no such
 /// maximum at all.
 #[test]
