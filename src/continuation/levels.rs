@@ -273,7 +273,7 @@ fn roots_of(points: &[Point], asked: &MeasureLevel, limit: f64) -> Vec<Root> {
 }
 
 /// Neighbouring values of which one has a spectrum with a maximum above zero, and the other one whose slope only falls,
-/// both with the same kind of extremum at zero.
+/// both with a maximum at zero: a spectrum that rises from there has a maximum in any case.
 fn lost_maxima(
     values: &[f64],
     samples: &[Excess],
@@ -287,14 +287,15 @@ fn lost_maxima(
             _ => return None,
         };
         let is_maximum = known.over > known.error;
-        let [below, above] = [curvature(pair[0])?, curvature(pair[1])?];
-        let is_same = (below < 0.0) == (above < 0.0);
+        let falls = [curvature(pair[0])?, curvature(pair[1])?]
+            .iter()
+            .all(|one| *one < 0.0);
         let lost = Excess {
             at: if is_first { pair[1] } else { pair[0] },
             over: -known.over,
             ..known
         };
-        (is_maximum && is_same).then(|| Root {
+        (is_maximum && falls).then(|| Root {
             ends: if is_first {
                 [known, lost]
             } else {

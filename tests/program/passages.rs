@@ -156,7 +156,7 @@ fn wrong_questions_are_refused_with_their_place_and_a_remedy() {
         ("x = \"-k x\"", "x = \"-k x + cos(t)\"", ["under a periodic force", "leave [passage] out"]),
         ("times = [1, 0.5]", "times = [-1]", ["times", "greater than zero"]),
         ("quantiles = [0.5]", "quantiles = [1.5]", ["quantiles", "between 0 and 1"]),
-        ("[figures]", "[visits]\nv = \"x > 0.3\"\n[method]\nkind = \"sgcm\"\n[figures]", ["by `generator`", "sgcm"]),
+        ("[figures]", "[visits]\nv = \"x > 0.3\"\n[method]\nkind = \"sgcm\"\n[figures]", ["a system with one axis", "transitions"]),
     ] {
         assert_eq!(FILE.matches(old).count(), 1, "{old}");
         room.write("a.toml", FILE.replace(old, new));
