@@ -29,6 +29,8 @@ const LEAST_EXTRA_A_VALUE: usize = 4;
 /// Guesses at least, of values between others at which something may come and go; and as many as given values. On few
 /// cells readings that are not sure dip everywhere, and guesses would not end before values are as near as wanted.
 const LEAST_GUESSES: usize = 60;
+/// One of so many solves beyond the given values may be a guess: the others narrow what is seen.
+const GUESSED: usize = 3;
 
 /// The solved values of a stretch of a sweep.
 pub(super) struct Walk<'a> {
@@ -142,7 +144,7 @@ impl<'a> Walk<'a> {
     fn narrow(&mut self, most: usize) -> Result<(), SweepError> {
         let levels = asked_of(&self.source.subject().family);
         let mut left = most;
-        let mut guesses = LEAST_GUESSES.max(self.points.len());
+        let mut guesses = LEAST_GUESSES.max(self.points.len()).min(most / GUESSED);
         while left > 0 && !self.work.has_ended() {
             let search = Search {
                 points: &self.points,
@@ -152,11 +154,9 @@ impl<'a> Walk<'a> {
                 span: self.span,
                 options: &self.options,
             };
-            let mut wanted = search.values();
-            if wanted.is_empty() && guesses > 0 {
-                wanted.extend(search.guess());
-                guesses -= 1;
-            }
+            let guess = if guesses > 0 { search.guess() } else { None };
+            guesses -= usize::from(guess.is_some());
+            let mut wanted = guess.map_or_else(|| search.values(), |guess| vec![guess]);
             if wanted.is_empty() {
                 break;
             }
