@@ -29,9 +29,6 @@ pub(super) fn d_bifurcations(
     tolerance: f64,
 ) -> Vec<LevelCrossing> {
     let exponent = |value: f64| of_family(family, value).and_then(Result::ok);
-    if family.questions.fixed_point.is_none() {
-        return Vec::new();
-    }
     let parts = LOOKED_AT.div_ceil(points.len().saturating_sub(1).max(1));
     let inside = points.windows(2).flat_map(|pair| {
         let [from, to] = [pair[0].value, pair[1].value];

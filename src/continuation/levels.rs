@@ -5,11 +5,13 @@
 //! orders of magnitude. The error of the root is what one value less changes, and the number's own error over its
 //! slope.
 
+mod rise;
+
 use super::doubt::{BifurcationStatus, Doubt, status_of};
-use super::measure::{DECAY_DISCRIMINANT, EXPONENT, Measure, SPECTRAL_CURVATURE, SPECTRAL_RISE};
+use super::measure::{DECAY_DISCRIMINANT, EXPONENT, Measure, SPECTRAL_RISE};
 use super::spectral_change::SpectralChange;
 use super::{CellCheck, Point, SolveReport, Subject};
-use crate::numerics::{bisected, sort_ascending};
+use crate::numerics::bisected;
 use crate::system::{ExponentMethod, Family, MeasureLevel};
 use crate::topology::two_sided_limit;
 
@@ -242,73 +244,15 @@ pub(super) fn over(one: &Measure, level: f64, is_ratio: bool) -> (f64, f64) {
     }
 }
 
-/// The roots of a measure less its level. Where the extremum of a spectrum at frequency zero turns, the rise to a
-/// maximum above zero begins, or ends, with a jump, which is no change of its own. Elsewhere that rise passes zero
-/// before it is lost: a maximum that is there at one value, and no rise at the next, have a zero between them.
+/// The roots of a measure less its level.
 fn roots_of(points: &[Point], asked: &MeasureLevel, limit: f64) -> Vec<Root> {
     let samples = samples(points, asked, limit);
-    let mut found = roots(&samples);
+    let found = roots(&samples);
     let rise = asked.measure.strip_prefix(SPECTRAL_RISE.word);
-    if let Some(of) = rise.and_then(|rest| rest.strip_prefix('_')) {
-        let turn = MeasureLevel {
-            measure: SPECTRAL_CURVATURE.name(of),
-            level: 0.0,
-        };
-        let curvature = |at: f64| {
-            let point = points.iter().find(|point| point.value == at)?;
-            Some(measure_of(&point.report, &turn)?.value)
-        };
-        found.retain(|root| match root.ends.map(|end| curvature(end.at)) {
-            [Some(below), Some(above)] => (below < 0.0) == (above < 0.0),
-            _ => true,
-        });
-        let values: Vec<f64> = points.iter().map(|point| point.value).collect();
-        for lost in lost_maxima(&values, &samples, &curvature) {
-            found.retain(|root| !root.holds(&lost));
-            found.push(lost);
-        }
-        sort_ascending(&mut found, |root| root.value);
+    match rise.and_then(|rest| rest.strip_prefix('_')) {
+        Some(of) => rise::roots_of_rise(points, of, &samples, found),
+        None => found,
     }
-    found
-}
-
-/// Neighbouring values of which one has a spectrum with a maximum above zero, and the other one whose slope only falls,
-/// both with a maximum at zero: a spectrum that rises from there has a maximum in any case.
-fn lost_maxima(
-    values: &[f64],
-    samples: &[Excess],
-    curvature: &dyn Fn(f64) -> Option<f64>,
-) -> Vec<Root> {
-    let sample = |at: f64| samples.iter().find(|one| one.at == at).copied();
-    let between = |pair: &[f64]| {
-        let (known, is_first) = match [sample(pair[0]), sample(pair[1])] {
-            [Some(known), None] => (known, true),
-            [None, Some(known)] => (known, false),
-            _ => return None,
-        };
-        let is_maximum = known.over > known.error;
-        let falls = [curvature(pair[0])?, curvature(pair[1])?]
-            .iter()
-            .all(|one| *one < 0.0);
-        let lost = Excess {
-            at: if is_first { pair[1] } else { pair[0] },
-            over: -known.over,
-            ..known
-        };
-        (is_maximum && falls).then(|| Root {
-            ends: if is_first {
-                [known, lost]
-            } else {
-                [lost, known]
-            },
-            value: 0.5 * (pair[0] + pair[1]),
-            interpolation: 0.5 * (pair[1] - pair[0]),
-            of_measure: 0.0,
-            is_jump: true,
-            alone: None,
-        })
-    };
-    values.windows(2).filter_map(between).collect()
 }
 
 /// All roots between neighbouring samples, ascending.

@@ -61,30 +61,35 @@ pub(super) fn add_layers(
     }
 }
 
-/// Adds to the standard errors how densities change with the intensity of the noise, which is larger by a share:
-/// -s p (log p - ⟨log p⟩), exact where p is exp(-U/D).
+/// Adds to the standard errors how densities change with the intensity of the noise, which is larger by a share.
 pub(super) fn add_wider(densities: &mut [EstimatedDensity], share: f64) {
-    if share == 0.0 || !share.is_finite() {
-        return;
-    }
     for one in densities {
-        let masses = one.density.masses();
-        let logarithms = one.density.values.iter().map(|value| value.ln());
-        let logarithms: Vec<f64> = logarithms.collect();
-        let known = masses
-            .iter()
-            .zip(&logarithms)
-            .filter(|(mass, _)| **mass > 0.0);
-        let (total, sum) = known.fold((0.0, 0.0), |(total, sum), (mass, logarithm)| {
-            (total + mass, sum + mass * logarithm)
-        });
-        let values = one.density.values.iter().zip(&logarithms);
-        for (error, (&value, logarithm)) in one.standard_error.iter_mut().zip(values) {
-            if value > 0.0 {
-                *error = error.hypot(share * value * (logarithm - sum / total));
-            }
+        let changes = by_wider_noise(&one.density.masses(), &one.density.values, share);
+        for (error, change) in one.standard_error.iter_mut().zip(changes) {
+            *error = error.hypot(change);
         }
     }
+}
+
+/// How the values of a density change with the intensity of the noise, which is larger by a share: -s p (log p -
+/// ⟨log p⟩), exact where p is exp(-U/D). `masses` are those of the cells that the values are of.
+pub(super) fn by_wider_noise(masses: &[f64], values: &[f64], share: f64) -> Vec<f64> {
+    if share == 0.0 || !share.is_finite() {
+        return vec![0.0; values.len()];
+    }
+    let logarithms: Vec<f64> = values.iter().map(|value| value.ln()).collect();
+    let known = masses
+        .iter()
+        .zip(&logarithms)
+        .filter(|(mass, _)| **mass > 0.0);
+    let (total, sum) = known.fold((0.0, 0.0), |(total, sum), (mass, logarithm)| {
+        (total + mass, sum + mass * logarithm)
+    });
+    let change = |(&value, logarithm): (&f64, &f64)| match value > 0.0 {
+        true => -share * value * (logarithm - sum / total),
+        false => 0.0,
+    };
+    values.iter().zip(&logarithms).map(change).collect()
 }
 
 /// Moments with what cells and steps make of them beside sampling: variances in `excess`, one an axis, and noise that

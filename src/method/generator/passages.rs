@@ -7,7 +7,7 @@ use crate::cancellation::Cancellation;
 use crate::continuation::{Finding, Measure, PassageFault, SolveReport, StateField};
 use crate::density::EstimatedDensity;
 use crate::generator::{GeneratorOptions, Reach};
-use crate::method::measures::{measures_of_passage, measures_of_visits, transition_measures};
+use crate::method::measures::{add_visits, measures_of_passage, transition_measures};
 use crate::method::{GeneratorMethodOptions, MethodError, Problem};
 use crate::passage::{
     FieldTarget, KnownDensity, Passage, PassageError, PassageField, PassageMemory, Timed, field,
@@ -133,15 +133,9 @@ impl Asked<'_> {
         };
         let region = question.region.level().bind(&self.values)?;
         let found = visits((self.system.as_ref(), self.space), &region, density);
-        if let Ok(found) = &found {
-            report.measures.extend(measures_of_visits(question, found));
-        }
-        if !found.as_ref().is_ok_and(|found| found.entries.is_some()) {
-            report.findings.push(Finding::NoVisits {
-                visits: number,
-                is_endless: found.is_ok_and(|found| found.is_endless),
-            });
-        }
+        let found = found.ok();
+        let is_endless = found.is_some_and(|found| found.is_endless);
+        add_visits(report, (number, question), found.as_ref(), is_endless);
         Ok(())
     }
 

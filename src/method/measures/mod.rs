@@ -15,7 +15,7 @@ pub(super) use passage::{
 };
 pub(super) use slow_modes::measures as measures_of_slow_modes;
 pub(super) use spectra::{measures as measures_of_spectrum, signal_to_noise};
-pub(super) use visits::measures as measures_of_visits;
+pub(super) use visits::add_visits;
 
 pub(super) use balance::broken;
 

@@ -2,9 +2,9 @@
 
 use super::passages::Setting;
 use crate::cancellation::Cancellation;
-use crate::continuation::{Finding, SolveReport};
+use crate::continuation::SolveReport;
 use crate::method::MethodError;
-use crate::method::measures::measures_of_visits;
+use crate::method::measures::add_visits;
 use crate::monte_carlo::{ExitNumber, Transitions};
 use crate::passage::{Visits, is_endless};
 use crate::system::System;
@@ -39,20 +39,16 @@ impl Setting<'_> {
                         .ok()
                 }
             };
-            if let Some(found) = found {
+            let found = found.map(|found| {
                 let known = |number: &ExitNumber| (number.value, number.error());
                 let [share, rate, length] = [0, 1, 2].map(|place| known(&found[place]));
-                let found = Visits {
+                Visits {
                     time_share: share,
                     entries: Some([rate, length]),
                     is_endless,
-                };
-                let measures = measures_of_visits(question, &found);
-                report.measures.extend(measures);
-            } else {
-                let finding = Finding::NoVisits { visits, is_endless };
-                report.findings.push(finding);
-            }
+                }
+            });
+            add_visits(report, (visits, question), found.as_ref(), is_endless);
         }
         Ok(())
     }

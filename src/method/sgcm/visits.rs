@@ -5,10 +5,11 @@
 
 use super::SgcmSource;
 use super::source::SampledPoint;
-use crate::continuation::{Finding, SolveReport};
+use crate::continuation::SolveReport;
 use crate::method::MethodError;
-use crate::method::measures::measures_of_visits;
+use crate::method::measures::add_visits;
 use crate::method::report::Missing;
+use crate::method::step_errors::by_wider_noise;
 use crate::numerics::jackknife;
 use crate::passage::{KnownDensity, Visits, visits_and};
 use crate::space::CellSpace;
@@ -32,7 +33,13 @@ impl SgcmSource {
         }
         let (space, values) = (self.problem.space(), family.values_at(point.value)?);
         let (nodes, curved) = at_nodes(space, masses);
-        let mut others = vec![curved, wider(space, masses, share)];
+        let volumes = space.volumes();
+        let densities: Vec<f64> = (masses.iter().zip(&volumes))
+            .map(|(mass, volume)| mass / volume)
+            .collect();
+        let mut wider = by_wider_noise(masses, &densities, share);
+        (wider.iter_mut().zip(&volumes)).for_each(|(change, volume)| *change *= volume);
+        let mut others = vec![curved, wider];
         let change = |one: &Vec<f64>| one.iter().zip(masses).map(|(one, all)| one - all).collect();
         others.extend(replicates.iter().map(change));
         let density = KnownDensity {
@@ -47,16 +54,10 @@ impl SgcmSource {
             let region = question.region.level().bind(&values)?;
             let cells = (point.system.as_ref(), space);
             let found = visits_and(cells, &region, density, &others);
+            let found = found.ok();
             let found = found.map(|(found, changes)| with_errors(found, &changes, missing));
-            if let Ok(found) = &found {
-                report.measures.extend(measures_of_visits(question, found));
-            }
-            if !found.as_ref().is_ok_and(|found| found.entries.is_some()) {
-                report.findings.push(Finding::NoVisits {
-                    visits: number,
-                    is_endless: found.is_ok_and(|found| found.is_endless),
-                });
-            }
+            let is_endless = found.is_some_and(|found| found.is_endless);
+            add_visits(report, (number, question), found.as_ref(), is_endless);
         }
         Ok(())
     }
@@ -113,18 +114,4 @@ fn at_nodes(space: &CellSpace, masses: &[f64]) -> (Vec<f64>, Vec<f64>) {
         stride *= axis.count();
     }
     (nodes, changes)
-}
-
-/// What noise that is larger by a share changes of masses: -s p (log p - ⟨log p⟩), exact where p is exp(-U/D).
-fn wider(space: &CellSpace, masses: &[f64], share: f64) -> Vec<f64> {
-    let densities = masses.iter().zip(space.volumes());
-    let known = |(mass, volume): (&f64, f64)| (*mass > 0.0).then(|| (mass / volume).ln());
-    let logarithms: Vec<Option<f64>> = densities.map(known).collect();
-    let all = masses.iter().zip(&logarithms);
-    let mean: f64 = all
-        .clone()
-        .map(|(mass, log)| mass * log.unwrap_or(0.0))
-        .sum();
-    all.map(|(mass, log)| log.map_or(0.0, |log| -share * mass * (log - mean)))
-        .collect()
 }
