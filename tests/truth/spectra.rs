@@ -563,8 +563,8 @@ of = ["v"]
     );
 }
 
-/// The largest local maximum above zero of d ln S / d ln ω, S being the spectrum of x² of x'' = -k x - g x' + noise: that
-/// of the square of x's correlation, a sum of exponentials. None where the slope only falls.
+/// The largest local maximum above zero of d ln S / d ln ω, S being the spectrum of x² of x'' = -k x - g x' + noise.
+/// That is the spectrum of the square of x's correlation, a sum of exponentials. None where the slope only falls.
 fn largest_rise_of_square(k: f64, g: f64) -> Option<f64> {
     let root = Complex::new(0.25 * g * g - k, 0.0).sqrt();
     let [one, other] = [root, -root].map(|root| root - 0.5 * g);
