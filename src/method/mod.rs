@@ -61,7 +61,7 @@ pub(crate) use monte_carlo::MonteCarloCost;
 pub use monte_carlo::{Estimator, MonteCarloOptions, MonteCarloSource};
 pub use options::MethodOptions;
 pub use problem::Problem;
-pub(crate) use range::{KnownEnds, RangeError, automatic_ranges, pilot_box};
+pub(crate) use range::{KnownEnds, RangeError, automatic_ranges, pilot_box, repeats_along};
 #[cfg(feature = "store")]
 pub(crate) use sgcm::FEWEST_PHASES;
 pub(crate) use sgcm::SgcmCost;

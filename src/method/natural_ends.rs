@@ -3,7 +3,7 @@
 
 use crate::continuation::Finding;
 use crate::space::CellSpace;
-use crate::system::{System, largest_power, may_stay};
+use crate::system::{System, absorbs, largest_power, may_stay};
 
 /// Mass in the cells beside an end that is worth a finding.
 const LIMIT: f64 = 1e-3;
@@ -66,7 +66,7 @@ pub(super) fn findings(
                 }
             }
             let is_absorbed =
-                exponent <= -1.0 && may_stay(system, &space.ranges(), natural, (axis, end));
+                absorbs(exponent) && may_stay(system, &space.ranges(), natural, (axis, end));
             found.push(if is_absorbed {
                 Finding::Absorbed { axis, at, exponent }
             } else {
@@ -84,7 +84,7 @@ fn absorbing_power(
     (axis, end): (usize, usize),
 ) -> Option<f64> {
     let largest = largest_power(system, axis, &space.ranges(), end == 1);
-    largest.filter(|exponent| *exponent <= -1.0)
+    largest.filter(|exponent| absorbs(*exponent))
 }
 
 #[cfg(test)]

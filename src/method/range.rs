@@ -11,7 +11,9 @@ use crate::space::{Axis, CellSpace};
 use crate::system::{Enclosed, System};
 
 mod followed;
+mod turns;
 use followed::followed;
+pub(crate) use turns::repeats_along;
 
 /// Where trajectories start along an axis of which nothing is known.
 const PILOT_BOX: (f64, f64) = (-1.0, 1.0);
@@ -32,6 +34,8 @@ const MOST_CHANGES: usize = 40;
 const MOST_SHRUNK: usize = 12;
 /// A box this short, against the distance from zero, is a point.
 const TINY: f64 = 1e-11;
+/// Length, two turns, of a box along an axis along which the system repeats itself: those that leave it leave any.
+const TWO_TURNS: f64 = 4.0 * std::f64::consts::PI;
 /// Most steps of each trajectory in all boxes together: those of ten that take the most that one box may.
 const MOST_STEPS: usize = 2_000_000;
 
@@ -44,6 +48,14 @@ pub(crate) enum RangeError {
         /// Number of the system among those that were given.
         system: usize,
         /// The axis along which most of them do.
+        axis: usize,
+    },
+    /// Trajectories turn on and on along an axis along which the system is the same a turn further.
+    #[error("no range holds the density: free trajectories leave every")]
+    Turns {
+        /// Number of the system among those that were given.
+        system: usize,
+        /// The axis.
         axis: usize,
     },
     /// The effort that ranges are worth was spent.
@@ -228,6 +240,13 @@ fn ranges_of(
             .max_by_key(|&axis| seen.outside[axis])
             .unwrap_or(0);
         if seen.share_inside < INSIDE {
+            let length = ranges[leaving].1 - ranges[leaving].0;
+            if length >= TWO_TURNS && repeats_along(system, leaving) {
+                return Err(RangeError::Turns {
+                    system: number,
+                    axis: leaving,
+                });
+            }
             for axis in free().collect::<Vec<_>>() {
                 ranges[axis] = doubled(ranges[axis], known[axis]);
             }

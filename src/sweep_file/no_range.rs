@@ -1,15 +1,9 @@
 //! What is said where free trajectories found no range: along which axis, at which value, and what helps.
 
-use std::f64::consts::TAU;
-
 use super::diagnostic::Diagnostic;
 use super::settings::{Settings, at_cells};
 use super::verify::short;
-use crate::method::RangeError;
-
-/// States at which it is tried whether the equations repeat themselves, and the relative difference that is rounding.
-const STATES: usize = 8;
-const ROUNDING: f64 = 1e-9;
+use crate::method::{RangeError, repeats_along};
 
 impl Settings {
     /// Why no ranges were found: along which axis, at which value, and what helps.
@@ -34,7 +28,7 @@ impl Settings {
             }
         };
         match error {
-            RangeError::RunsAway { system, axis } => {
+            RangeError::RunsAway { system, axis } | RangeError::Turns { system, axis } => {
                 let (axis, value, remedy) = at(system, axis);
                 found(format!("{error} range of `{axis}`{value}"), &axis, remedy)
             }
@@ -60,7 +54,9 @@ impl Settings {
     fn remedy_of_range(&self, axis: usize) -> String {
         let (name, model) = (self.family.axis(axis), self.family.model());
         let ends = self.axes[axis].ends;
-        if model.typed().is_some() && self.repeats_along(axis) {
+        let corners = self.corners();
+        let repeats = |values| repeats_along(model.system(values).as_ref(), axis);
+        if model.typed().is_some() && corners.first().is_some_and(repeats) {
             return format!(
                 "every equation repeats itself with {name} + 2 pi, so {name} may be an angle: add [system.bounds] with \
                  `{name} = \"periodic\"` (docs/angles.md)"
@@ -91,38 +87,5 @@ impl Settings {
             None => String::new(),
         };
         format!("give {open}{bounds}")
-    }
-
-    /// Whether drift and noise depend on the coordinate of an axis and are the same a turn of 2π further, at states of
-    /// which none is special.
-    fn repeats_along(&self, axis: usize) -> bool {
-        let corners = self.corners();
-        let Some(values) = corners.first() else {
-            return false;
-        };
-        let system = self.family.model().system(values);
-        let rates = |state: &[f64]| {
-            let noises = (0..state.len()).map(|axis| system.intensity_at(axis, 0.0, state));
-            let mut rates = system.drift_at(0.0, state);
-            rates.extend(noises);
-            rates
-        };
-        let changes_after = |turn: f64| {
-            let states = (0..STATES).map(|state| -> Vec<f64> {
-                let coordinates = (0..system.dimension()).map(|axis| axis as f64);
-                coordinates
-                    .map(|axis| 0.3 + 0.45 * state as f64 - 0.2 * axis)
-                    .collect()
-            });
-            states.into_iter().any(|mut state| {
-                let before = rates(&state);
-                state[axis] += turn;
-                let pairs = before.into_iter().zip(rates(&state));
-                let mut differences =
-                    pairs.map(|(before, after)| (after - before) / (1.0 + before.abs()));
-                !differences.all(|difference| difference.abs() < ROUNDING)
-            })
-        };
-        changes_after(1.0) && !changes_after(TAU)
     }
 }

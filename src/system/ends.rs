@@ -87,9 +87,18 @@ fn holds_all(system: &dyn System, ranges: &[(f64, f64)], set: &[Option<usize>]) 
     })
 }
 
+/// By how much an exponent that is found from drift and noise beside an end may be off.
+const LEFT_OF_EXPONENT: f64 = 1e-9;
+
+/// Whether a density that goes like this power of the distance from an end has no integral: all mass ends there. An
+/// exponent that cannot be told from -1 counts as -1: half of the mass would be nearer to the end than any number is.
+pub(crate) fn absorbs(exponent: f64) -> bool {
+    exponent <= -1.0 + LEFT_OF_EXPONENT
+}
+
 /// The largest exponent, wherever the other coordinates are, of the power of the distance that the density along an
-/// axis goes like beside a natural end; `None` where there is none. Where it is -1 or less all mass ends there: the
-/// exponent that counts is a mean of those of all places.
+/// axis goes like beside a natural end; `None` where there is none. Where it is -1 or less ([`absorbs`]) all mass ends
+/// there: the exponent that counts is a mean of those of all places.
 pub(crate) fn largest_power(
     system: &dyn System,
     axis: usize,
@@ -107,12 +116,14 @@ pub(crate) fn largest_power(
             let drift = inward * system.drift_at(0.0, &state)[axis];
             (2.0 * drift * distance / intensity, intensity)
         };
-        let ((near, weak), (far, strong)) = (look(nearest), look(APART * nearest));
-        let order = (strong / weak).ln() / APART.ln();
-        // The first term is off by a multiple of the distance where it has a limit.
-        let has_limit = (near - far).abs() <= (1.0 + far.abs()) * SETTLED;
-        let rate = (APART * near - far) / (APART - 1.0);
-        Some(rate - order).filter(|power| has_limit && power.is_finite())
+        let seen = [0, 1, 2, 3].map(|place| look(nearest * APART.powi(place)));
+        let order = |place: usize| (seen[place + 1].1 / seen[place].1).ln() / APART.ln();
+        // Both terms are off by multiples of the distance and of its square, the first where it has a limit.
+        let has_limit = (seen[0].0 - seen[1].0).abs() <= (1.0 + seen[1].0.abs()) * SETTLED;
+        let power = |place: usize| seen[place].0 - order(place);
+        let straight = |place: usize| (APART * power(place) - power(place + 1)) / (APART - 1.0);
+        let power = (APART * APART * straight(0) - straight(1)) / (APART * APART - 1.0);
+        Some(power).filter(|power| has_limit && power.is_finite())
     };
     let powers: Option<Vec<f64>> = states_at(&only(axis, at, ranges.len()), ranges)
         .map(power_at)

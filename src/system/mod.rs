@@ -68,7 +68,7 @@ pub use compiled_steps::{CompiledSteps, StepScheme};
 pub use description::{AxisDescription, ParameterDescription, ParameterRange};
 pub(crate) use description::{PHASE_AXIS, in_letters};
 pub(crate) use enclosed::Enclosed;
-pub(crate) use ends::{closed_ends, largest_power, may_stay, natural_ends};
+pub(crate) use ends::{absorbs, closed_ends, largest_power, may_stay, natural_ends};
 pub use facts::{Facts, PeriodicDrift, SwitchingSurface, Symmetry};
 pub use family::Family;
 pub use linear::{FixedPointFault, Linearised};

@@ -125,8 +125,8 @@ fn errors_of_an_oscillator_over_a_barrier_hold_from_weak_damping_to_strong() {
             let axes = [(-1.9, 1.9, n), (-half, half, n)];
             passage(&model, &format!("x > {border}"), &[start, 0.0], &axes)
         };
-        let fine = on(240);
-        for n in [80, 100, 140] {
+        let fine = on(200);
+        for n in [80, 140] {
             let coarse = on(n);
             for (what, (value, error), (better, rest)) in [
                 ("mean", coarse.mean, fine.mean),

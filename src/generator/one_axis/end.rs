@@ -76,17 +76,19 @@ pub(crate) fn exponent_at(system: &dyn System, axis: &Axis, end: End) -> Option<
     if nearest.abs() > UNBOUNDED * farthest.abs().max(1.0) {
         return Some(nearest.signum() * f64::INFINITY);
     }
-    // The order of the noise, from one place to the next. Both are off by a multiple of the distance, which falls out.
+    // The order of the noise, from one place to the next. Both are off by multiples of the distance and of its square,
+    // which fall out.
     let order = |place: usize| (intensity[place + 1] / intensity[place]).ln() / RATIO.ln();
     let found = |place: usize| rate(place) - order(place);
-    let extrapolated = (RATIO * found(0) - found(1)) / (RATIO - 1.0);
+    let straight = |place: usize| (RATIO * found(place) - found(place + 1)) / (RATIO - 1.0);
+    let extrapolated = (RATIO * RATIO * straight(0) - straight(1)) / (RATIO * RATIO - 1.0);
     extrapolated.is_finite().then_some(extrapolated)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::system::{Interpretation, TypedModel};
+    use crate::system::{Interpretation, TypedModel, absorbs};
 
     fn exponents(drift: &str, noise: &str, to: f64) -> [Option<f64>; 2] {
         let model = TypedModel::new("typed", "A typed system", ["x"])
@@ -116,6 +118,20 @@ mod tests {
             near(genes[0], exact[0]) && near(genes[1], exact[1]),
             "{genes:?}"
         );
+    }
+
+    #[test]
+    fn a_power_of_minus_one_is_told_where_equations_bend_toward_the_end() {
+        // Growth 1 against an uptake that saturates, read by Stratonovich: p ~ x^(2(1 - b)/σ² - 1). From b = 1 on all
+        // mass ends at 0.
+        let powers = [0.9, 1.0, 1.1].map(|b: f64| {
+            let drift = format!("x (1 - x/8) - {b} x/(1 + x) + 0.08 x");
+            exponents(&drift, "0.4 x", 31.0)[0].unwrap()
+        });
+        for (found, exact) in powers.into_iter().zip([0.25, -1.0, -2.25]) {
+            assert!((found - exact).abs() < 1e-9, "{found} {exact}");
+        }
+        assert_eq!(powers.map(absorbs), [false, true, true]);
     }
 
     #[test]

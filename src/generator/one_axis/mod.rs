@@ -18,7 +18,7 @@ pub(crate) use end::{End, exponent_at};
 pub use profile::profile;
 
 use crate::space::Axis;
-use crate::system::{LANES, System};
+use crate::system::{LANES, System, absorbs};
 use cuts::cuts_toward;
 
 pub(super) use cuts::surfaces;
@@ -50,7 +50,7 @@ pub fn one_axis(system: &dyn System, axis: &Axis) -> Option<OneAxis> {
         return None;
     }
     let ends = End::ALL.map(|end| exponent_at(system, axis, end));
-    if ends.iter().flatten().any(|one| *one <= -1.0) {
+    if ends.iter().flatten().any(|one| absorbs(*one)) {
         return None;
     }
     let rule = Rule::new();

@@ -13,7 +13,7 @@ use crate::method::MethodError;
 use crate::method::report::Reporter;
 use crate::method::structure::closed_ends;
 use crate::space::{Axis, CellSpace};
-use crate::system::{Family, System, SystemError};
+use crate::system::{Family, System, SystemError, absorbs};
 
 /// Largest relative error of a cell that the quadrature may have; where noise nearly vanishes, or the drift jumps
 /// inside a cell, the generator serves better.
@@ -36,7 +36,7 @@ fn line(space: &CellSpace) -> Option<&Axis> {
 pub(super) fn absorbed(source: &GeneratorSource, system: &dyn System) -> Option<Finding> {
     let axis = line(source.problem.space())?;
     End::ALL.into_iter().find_map(|end| {
-        let exponent = exponent_at(system, axis, end).filter(|exponent| *exponent <= -1.0)?;
+        let exponent = exponent_at(system, axis, end).filter(|exponent| absorbs(*exponent))?;
         let at = end.of(axis);
         Some(Finding::Absorbed {
             axis: 0,

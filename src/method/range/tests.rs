@@ -227,3 +227,23 @@ fn places_where_steps_are_far_too_short_say_nothing_of_ranges() {
     let hard = |x: f64| x.powi(12) / 12.0;
     holds_and_is_not_wide(particle("-x^11", 0.1, 0.5), &hard, (0.25 / 0.2, 0.0));
 }
+
+/// A rotor under a torque turns on and on: that is told from the second box on which two turns fit, and no box beyond
+/// is looked at. In a well that noise leaves once in 10^6 periods it has a range.
+#[test]
+fn a_rotor_that_turns_on_is_told_apart_from_one_that_rests() {
+    let rotor = |torque: f64, noise: f64| {
+        let typed = TypedModel::new("rotor", "Rotor", ["x", "y"])
+            .with_equation("x", "y")
+            .with_equation("y", format!("-0.3 y - sin(x) + {torque}"))
+            .with_noise("y", [format!("{noise}")]);
+        typed.build().unwrap().system_with(&[]).unwrap()
+    };
+    let ranges = |system| automatic_ranges(&[system], &[[None; 2]; 2], 1, &Cancellation::new());
+    assert_eq!(
+        ranges(rotor(0.9, 0.5)),
+        Err(RangeError::Turns { system: 0, axis: 0 })
+    );
+    let held = ranges(rotor(0.0, 0.1)).unwrap();
+    assert!(held[0].1 < std::f64::consts::PI, "{held:?}");
+}
