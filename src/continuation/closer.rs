@@ -25,10 +25,10 @@ use super::look::{CloserLook, counted, with_rows};
 use super::segment::Work;
 use super::span::{Span, evenly_spaced};
 use super::walk::Walk;
-use super::{CellCheck, Goal, Want};
+use super::{CellCheck, Goal, Point, Want};
 use crate::cancellation::Cancellation;
 use crate::density::Observable;
-use crate::topology::Signature;
+use crate::topology::{Detection, Signature};
 
 /// What is looked at closer, and with what.
 pub(super) struct Closer<'p, 'a> {
@@ -168,8 +168,8 @@ impl<'p, 'a> Closer<'p, 'a> {
     }
 
     /// What the sweep counts at the ends of a stretch, if finer cells count the same, or what an earlier look whose
-    /// rows are kept has counted there. Where the sweep's cells are wide at its own end they are not sure of what is
-    /// there: finer ones are believed that are not, or that count what others have counted before.
+    /// rows are kept has counted there. Where the sweep's cells are wide at its own end, or show there what may be an
+    /// error, they are not sure of what is there: finer ones are believed that are not, or that count what others have counted before.
     fn ends(
         &mut self,
         found: &StretchFindings,
@@ -189,8 +189,15 @@ impl<'p, 'a> Closer<'p, 'a> {
             } else {
                 points.last()
             };
-            let is_wide = own.is_some_and(|one| one.value == stretch[end] && has_wide_cells(one));
-            is_wide && (is_known || !found.is_wide)
+            let is_unsure = |one: &&Point| {
+                has_wide_cells(one)
+                    || one
+                        .detections
+                        .get(place)
+                        .is_some_and(Detection::has_unresolved)
+            };
+            let own = own.filter(|one| one.value == stretch[end]);
+            own.is_some_and(is_unsure) && (is_known || !found.is_wide)
         };
         let small = 1e-6 * self.span.step;
         let is_seen = |end: usize| {

@@ -2,7 +2,8 @@
 
 use super::Point;
 use crate::density::Density;
-use crate::topology::{FeatureKind, Indicator, Verdict};
+use crate::space::Axis;
+use crate::topology::{Detection, FeatureKind, Flank, Indicator, Verdict};
 
 /// How far a feature may be from the cell that is highest or lowest around it, in widths of that cell.
 const BESIDE: f64 = 1.5;
@@ -14,31 +15,46 @@ pub(super) fn is_between_counted(point: &Point, observable: usize, inflection: &
         &point.densities[observable].density,
         &point.detections[observable],
     );
-    let rising = inflection.kind.traits().rising;
-    let flank = rising.and_then(|rising| ends_of_flank(density, &inflection.place, rising));
-    let Some((peak, valley)) = flank else {
+    let (Some(rising), &[place]) = (inflection.kind.traits().rising, &inflection.place[..]) else {
         return false;
     };
+    let is_counted = |kind, cell| is_counted(kind, cell, &density.axes[0], detection);
+    ends_of_flank(density, place, rising).is_some_and(|(peak, valley)| {
+        is_counted(FeatureKind::Peak, peak) && is_counted(FeatureKind::Valley, valley)
+    })
+}
+
+/// Whether the slope of a density along one axis is that between a valley and a peak which is not counted: cells show
+/// the peak, or are too wide to show it.
+pub(super) fn rises_to_uncounted(density: &Density, detection: &Detection, flank: &Flank) -> bool {
+    if flank.line != 0 || flank.value <= 0.0 {
+        return false;
+    }
     let axis = &density.axes[0];
-    let is_counted = |kind: FeatureKind, cell: usize| {
-        let (centre, width) = (axis.centre(cell), axis.width(cell));
-        let features = detection.features.iter();
-        let mut counted =
-            features.filter(|one| one.kind == kind && one.verdict == Verdict::Present);
-        counted.any(|one| (one.position[0] - centre).abs() <= BESIDE * width)
-    };
-    is_counted(FeatureKind::Peak, peak) && is_counted(FeatureKind::Valley, valley)
+    let is_within = |cell: usize| 0 < cell && cell + 1 < density.values.len();
+    match ends_of_flank(density, flank.place, flank.rising) {
+        Some((peak, _)) => is_within(peak) && !is_counted(FeatureKind::Peak, peak, axis, detection),
+        None => axis.find(flank.place).is_some_and(is_within),
+    }
+}
+
+/// Whether a feature is counted that may be in this cell.
+fn is_counted(kind: FeatureKind, cell: usize, axis: &Axis, detection: &Detection) -> bool {
+    let (centre, width) = (axis.centre(cell), axis.width(cell));
+    let features = detection.features.iter();
+    let mut counted = features.filter(|one| one.kind == kind && one.verdict == Verdict::Present);
+    counted.any(|one| (one.position[0] - centre).abs() <= BESIDE * width)
 }
 
 /// The cells at the upper and the lower end of the flank that a place lies on; `None` off a density along one axis, and
 /// where cells do not rise, or fall, as they should: a pair may be narrower than they are.
-fn ends_of_flank(density: &Density, place: &[f64], rises: bool) -> Option<(usize, usize)> {
-    let ([axis], [place], values) = (&density.axes[..], place, &density.values) else {
+fn ends_of_flank(density: &Density, place: f64, rises: bool) -> Option<(usize, usize)> {
+    let ([axis], values) = (&density.axes[..], &density.values) else {
         return None;
     };
     let start = axis
         .edges()
-        .partition_point(|edge| edge <= place)
+        .partition_point(|edge| *edge <= place)
         .checked_sub(1)?;
     let is_inside = 0 < start && start + 1 < values.len();
     if !is_inside || (values[start + 1] > values[start - 1]) != rises {
@@ -58,7 +74,6 @@ fn ends_of_flank(density: &Density, place: &[f64], rises: bool) -> Option<(usize
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::space::Axis;
 
     #[test]
     fn a_flank_ends_at_its_peak_and_its_valley() {
@@ -71,7 +86,7 @@ mod tests {
             .collect();
         let axes = vec![axis];
         let density = Density { axes, values };
-        let cells = |place: f64, rises: bool| ends_of_flank(&density, &[place], rises);
+        let cells = |place: f64, rises: bool| ends_of_flank(&density, place, rises);
         let at = |cell: usize| density.axes[0].centre(cell);
         let (peak, valley) = cells(0.5, true).unwrap();
         assert!((at(peak) - 1.0).abs() < 0.1 && at(valley).abs() < 0.1);

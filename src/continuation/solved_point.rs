@@ -2,14 +2,16 @@
 
 use super::Point;
 use super::dips::Flanks;
-use crate::topology::Detector;
+use super::flank::rises_to_uncounted;
+use crate::topology::{Detector, Flank};
 
 /// A point with the flanks of its densities.
 pub(super) struct SolvedPoint {
     pub(super) point: Point,
     /// Those whose sign is sure.
     pub(super) flanks: Flanks,
-    /// Places of the observables of which one is not.
+    /// Places of the observables in which something is not sure: the sign of a flank; a feature that may be what errors
+    /// make; a flank that rises to a peak which errors are too large to count.
     pub(super) unsure: Vec<usize>,
 }
 
@@ -21,8 +23,15 @@ impl SolvedPoint {
         let (flanks, unsure): (Flanks, Flanks) = flanks
             .map(|all| all.into_iter().partition(|one| one.is_sure))
             .unzip();
-        let unsure = (0..unsure.len()).filter(|&place| !unsure[place].is_empty());
-        let unsure = unsure.collect();
+        let is_unsure = |place: &usize| {
+            let (density, detection) =
+                (&point.densities[*place].density, &point.detections[*place]);
+            let is_uncounted = |flank: &Flank| rises_to_uncounted(density, detection, flank);
+            !unsure[*place].is_empty()
+                || detection.has_unresolved()
+                || flanks[*place].iter().any(is_uncounted)
+        };
+        let unsure = (0..unsure.len()).filter(is_unsure).collect();
         Self {
             point,
             flanks,

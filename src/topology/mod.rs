@@ -148,6 +148,12 @@ impl Detection {
             .filter(|feature| feature.kind == kind)
             .nth(rank)
     }
+
+    /// Whether a feature may be there, or may be what errors make.
+    pub(crate) fn has_unresolved(&self) -> bool {
+        let mut features = self.features.iter();
+        features.any(|one| one.verdict == Verdict::Unresolved)
+    }
 }
 
 /// Finds the features of a density.
