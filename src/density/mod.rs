@@ -143,8 +143,8 @@ pub struct EstimatedDensity {
     /// whatever its mass.
     pub negligible: f64,
     /// What the ends of the ranges, and modes that are not there, may have changed. It changes from cell to cell as the
-    /// density itself does, and makes no feature: so it is no part of the standard errors, by which neighbours are told
-    /// apart, but of what is stated.
+    /// density itself does, and makes no feature but where the density is as low as at the ends: so it is no part of
+    /// the standard errors, by which neighbours are told apart, but of what is stated.
     pub truncation: Truncation,
 }
 

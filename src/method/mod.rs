@@ -22,8 +22,10 @@
 //! all methods.
 
 mod any;
+mod beside_ends;
 mod bins;
 mod cost;
+mod ends;
 mod exponents;
 mod forcing;
 mod generator;

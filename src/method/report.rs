@@ -2,6 +2,7 @@
 //! once.
 
 use super::Problem;
+use super::ends::{self, AtEnds};
 use super::measures::{Cells, broken, derive};
 use super::tails::{self, Beyond};
 use crate::continuation::measure::{
@@ -40,8 +41,8 @@ pub(super) struct Reporter<'a> {
     problem: &'a Problem,
     /// What is known so far.
     pub(super) report: SolveReport,
-    /// What may lie beyond the ends of each axis.
-    beyond: Vec<[Beyond; 2]>,
+    /// What is found at the ends of each axis.
+    at_ends: AtEnds,
     /// Share of the mass that leaves within one relaxation time.
     leak: f64,
     /// The largest density at an open end, over the largest along the axis.
@@ -65,7 +66,7 @@ impl<'a> Reporter<'a> {
         Self {
             problem,
             report: SolveReport::solved(method),
-            beyond: Vec::new(),
+            at_ends: AtEnds::default(),
             leak: 0.0,
             level: 0.0,
         }
@@ -75,7 +76,13 @@ impl<'a> Reporter<'a> {
     /// one relaxation time, which is missing inside.
     pub(super) fn missing(&self) -> Missing {
         Missing {
-            beyond: self.beyond.iter().flatten().map(|end| end.mass).sum(),
+            beyond: self
+                .at_ends
+                .beyond
+                .iter()
+                .flatten()
+                .map(|end| end.mass)
+                .sum(),
             leak: self.leak,
             level: self.level,
         }
@@ -97,7 +104,7 @@ impl<'a> Reporter<'a> {
     /// forcing; those of angles and of a phase, which depend on where the turn is cut, are left out. What may lie
     /// beyond the ends of the ranges adds to their errors; where nothing bounds that, there is none.
     pub(super) fn moments(&mut self, estimated: &[EstimatedMoments]) {
-        let ends = tails::beyond(self.space(), (&self.beyond, self.leak), estimated);
+        let ends = ends::beyond(self.space(), (&self.at_ends, self.leak), estimated);
         let family = self.problem.family();
         let axes = self.space().dimension();
         let lines: Vec<usize> = family.states_on_lines().map(|(index, _)| index).collect();
@@ -135,7 +142,7 @@ impl<'a> Reporter<'a> {
 
     /// By how much what may lie beyond the ends shifts the mean along each axis, from the moments of the axes.
     pub(super) fn shifts(&self, of_axes: &[EstimatedMoments]) -> Vec<f64> {
-        let ends = tails::beyond(self.space(), (&self.beyond, self.leak), of_axes);
+        let ends = ends::beyond(self.space(), (&self.at_ends, self.leak), of_axes);
         let axes = of_axes.iter().take(self.space().dimension()).enumerate();
         axes.map(|(axis, one)| ends.of(axis, &one.moments).mean)
             .collect()
@@ -143,7 +150,8 @@ impl<'a> Reporter<'a> {
 
     /// Nothing lies beyond the ends for moments: they are those of the whole density.
     pub(super) fn is_whole(&mut self) {
-        self.beyond
+        self.at_ends
+            .beyond
             .iter_mut()
             .for_each(|ends| *ends = [Beyond::default(); 2]);
     }
@@ -176,10 +184,7 @@ impl<'a> Reporter<'a> {
         let tails = tails::tails(self.space(), mass, closed);
         let levels = tails.iter().flatten().map(|end| end.level);
         self.level = levels.fold(0.0, f64::max);
-        self.beyond = tails
-            .iter()
-            .map(|ends| ends.map(|end| end.beyond))
-            .collect();
+        self.at_ends = AtEnds::new(self.space(), mass, &tails);
         for (axis, ends) in tails.into_iter().enumerate() {
             let mass = ends[0].outer + ends[1].outer;
             let powers = ends.iter().filter_map(|end| end.beyond.heavy());

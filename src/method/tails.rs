@@ -1,7 +1,5 @@
-//! What lies beyond the ends of the ranges: its mass from how the density falls near them, and what it would do to
-//! means and deviations. What leaves within one relaxation time is missing inside as well, and counts as beyond.
+//! What lies beyond the ends of the ranges: its mass, and how it goes on, from how the density falls near them.
 
-use crate::density::{EstimatedMoments, Moments};
 use crate::space::{Axis, CellSpace};
 
 /// Distance from an open end, in lengths over which the density falls by e, from which on it falls as it would were
@@ -12,7 +10,7 @@ const FROM_END: f64 = 2.0;
 const CELLS_FROM_END: usize = 2;
 
 /// Share of the density that is there at that distance.
-fn share_told() -> f64 {
+pub(super) fn share_told() -> f64 {
     1.0 - (-FROM_END).exp()
 }
 
@@ -58,7 +56,7 @@ impl Beyond {
     /// Mean of t^order over what lies beyond the end; infinite where the power is too small for it to exist.
     ///
     /// It is exact for a power law, and of first order in 1/ν for an exponential.
-    fn stretch(&self, order: i32) -> f64 {
+    pub(super) fn stretch(&self, order: i32) -> f64 {
         let order = f64::from(order);
         let rest = self.power - (1.0 - self.growth) * (order + 1.0);
         if rest > 0.0 {
@@ -204,93 +202,10 @@ pub(super) fn tails(space: &CellSpace, mass: &[f64], closed: &[[bool; 2]]) -> Ve
     ends.collect()
 }
 
-/// What lies beyond the ends of the axes, for moments.
-pub(super) struct Ends {
-    /// Of each axis what lies beyond each end and the end's distance from the mean in standard deviations.
-    axes: Vec<[(Beyond, f64); 2]>,
-}
-
-/// What lies beyond the ends, from what is found there, the share that leaves within one relaxation time, and the
-/// moments of the axes, which come first among all.
-pub(super) fn beyond(
-    space: &CellSpace,
-    (found, leak): (&[[Beyond; 2]], f64),
-    estimated: &[EstimatedMoments],
-) -> Ends {
-    let axes = space.axes().iter().zip(found).zip(estimated);
-    let axes = axes.map(|((axis, found), one)| {
-        let distance = |end: f64| {
-            let deviation = one.moments.standard_deviation.max(f64::MIN_POSITIVE);
-            (end - one.moments.mean).abs() / deviation
-        };
-        // A series reaches beyond its outermost nodes.
-        match axis.is_modes() {
-            true => [(Beyond::default(), 0.0); 2],
-            false => [(found[0], axis.from()), (found[1], axis.to())].map(|(beyond, end)| {
-                let mass = beyond.mass + leak;
-                (Beyond { mass, ..beyond }, distance(end))
-            }),
-        }
-    });
-    Ends {
-        axes: axes.collect(),
-    }
-}
-
-impl Ends {
-    /// Errors that it makes of the moments of an axis, or of a quantity, which is taken to grow as squares of the axes
-    /// do. They are infinite where a density falls as too small a power.
-    pub(super) fn of(&self, index: usize, moments: &Moments) -> Moments {
-        let (ends, power): (Vec<(Beyond, f64)>, i32) = match self.axes.get(index) {
-            Some(own) => (own.to_vec(), 1),
-            None => (self.axes.iter().flatten().copied().collect(), 2),
-        };
-        let sum = |power: i32| -> f64 {
-            let terms = ends
-                .iter()
-                .filter(|(beyond, distance)| beyond.mass > 0.0 && distance.is_finite())
-                .map(|(beyond, distance)| {
-                    beyond.mass * distance.powi(power) * beyond.stretch(power)
-                });
-            terms.sum()
-        };
-        Moments {
-            mean: moments.standard_deviation * sum(power),
-            standard_deviation: 0.5 * moments.standard_deviation * sum(2 * power),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::space::Axis;
-
-    #[test]
-    fn the_tail_of_an_exponential_density_is_found_and_its_moments_bounded() {
-        // p = exp(-x) from the wall at 0 on, cut off at 6.
-        let space = CellSpace::new(vec![Axis::uniform(0.0, 6.0, 24).unwrap()]).unwrap();
-        let edges = space.axes()[0].edges().windows(2);
-        let masses: Vec<f64> = edges
-            .map(|edge| (-edge[0]).exp() - (-edge[1]).exp())
-            .collect();
-        let ends = tails(&space, &masses, &[[true, false]])[0];
-        assert_eq!(ends[0], Tail::default(), "nothing is beyond a wall");
-        let found = ends.map(|end| end.beyond);
-        assert!((share_told() * found[1].mass / (-6.0_f64).exp() - 1.0).abs() < 1e-12);
-        let total: f64 = masses.iter().sum();
-        let inside: Vec<f64> = masses.iter().map(|mass| mass / total).collect();
-        let own = crate::density::moments(&space, &inside).unwrap()[0];
-        let ends = beyond(&space, (&[found], 0.0), &[EstimatedMoments::unjudged(own)]);
-        let error = ends.of(0, &own);
-        // Mean and deviation of the whole are 1. What is beyond lies farther out than the end.
-        for (off, error) in [
-            (1.0 - own.mean, error.mean),
-            (1.0 - own.standard_deviation, error.standard_deviation),
-        ] {
-            assert!(off > 0.5 * error && off < 2.0 * error, "{off:e} {error:e}");
-        }
-    }
 
     #[test]
     fn what_leaves_through_an_end_does_not_hide_what_is_beyond_it() {

@@ -76,21 +76,28 @@ impl Peak {
 
 /// The largest local maximum above zero of d ln S / d ln ω, how steeply an observable's power spectrum rises: above
 /// zero where the spectrum has a maximum at a frequency above zero, and zero where one is born beside a minimum. A rise
-/// that begins at zero counts as one: the spectrum of a velocity, which has no power there, begins so. `None` where the
-/// slope only falls from zero on, as that of a Lorentzian does.
+/// that begins at zero counts as one. `None` where the slope only falls from zero on, as that of a Lorentzian does.
 pub(super) fn steepest_rise(shape: &Shape<'_>) -> Option<f64> {
     let change = |[power, slope, bend]: [f64; 3], frequency: f64| {
         let (slope, bend) = (slope / power, bend / power);
         slope + frequency * (bend - slope * slope)
     };
     let at = shape.maxima(&change).into_iter();
-    let rise = |frequency: f64| {
-        let [power, slope, _] = shape.at(frequency);
-        frequency * slope / power
-    };
-    let first = shape.places.first().map(|&frequency| rise(frequency));
-    let from_zero = first.filter(|rise| *rise > 0.0);
+    let rise = |frequency: f64| rise(shape.at(frequency), frequency);
+    let from_zero = shape.rise_from_zero().map(|(limit, _)| limit);
     at.map(rise).chain(from_zero).max_by(f64::total_cmp)
+}
+
+/// d ln S / d ln ω of a spectrum with its slopes at a frequency.
+fn rise([power, slope, _]: [f64; 3], frequency: f64) -> f64 {
+    frequency * slope / power
+}
+
+/// How steeply a spectrum rises at the lowest frequency that is looked at.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lowest {
+    pub(super) frequency: f64,
+    pub(super) steepness: f64,
 }
 
 /// The power spectrum of an observable with its slopes, at frequencies at which its shape is looked at.
@@ -125,6 +132,22 @@ impl<'a> Shape<'a> {
             highest,
             places,
         }
+    }
+
+    /// How steeply the spectrum rises from zero on, where it is less steep from there on, and what it is at the lowest
+    /// frequency that is looked at. The spectrum of a velocity, which has no power at zero, rises so. A spectrum is an
+    /// even function: it begins with an even power of the frequency, and the steepness is that power.
+    pub(super) fn rise_from_zero(&self) -> Option<(f64, Lowest)> {
+        let (&first, &lowest) = self.places.first().zip(self.values.first())?;
+        let steepness = rise(lowest, first);
+        let limit = 2.0 * (0.5 * steepness).round().max(1.0);
+        (steepness > 0.0).then_some((
+            limit,
+            Lowest {
+                frequency: first,
+                steepness,
+            },
+        ))
     }
 
     fn at(&self, frequency: f64) -> [f64; 3] {

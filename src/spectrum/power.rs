@@ -7,7 +7,7 @@ use super::breaks::summable;
 use super::errors::{Estimate, Worked, combined, on_grids, smoothed};
 use super::grid::Grid;
 use super::motion::Motion;
-use super::peak::{Peak, Shape, steepest_rise};
+use super::peak::{Lowest, Peak, Shape, steepest_rise};
 use super::resolvent::Resolvent;
 use super::transfer::Transfer;
 use super::{SpectrumError, Steady};
@@ -73,7 +73,8 @@ pub struct Features {
     /// S''(0)/S(0), in the square of time: above zero the spectrum rises from zero on.
     pub curvature: Option<Known>,
     /// The largest local maximum above zero of d ln S / d ln ω: above zero where the spectrum has a maximum at a
-    /// frequency above zero; `None` where there is no such maximum of the slope.
+    /// frequency above zero. Where there is no power at zero and that slope falls from there on, its value there;
+    /// `None` where there is no such maximum of the slope.
     pub rise: Option<Known>,
 }
 
@@ -227,7 +228,8 @@ fn on_grid(
         let pairs = [pair, (of_spectra[pair.0], of_spectra[pair.1])];
         let numbers =
             [full, half, fewer].map(|transfer| numbers(transfer, pairs, question, motion));
-        let ends = of_ends(&resolvent, pairs, question, &numbers[0]);
+        let shown = (numbers[0].as_slice(), highest(question, motion));
+        let ends = of_ends(&resolvent, pairs, question, shown);
         for (number, &value) in numbers[0].iter().enumerate() {
             all.push(Estimate {
                 value,
@@ -263,6 +265,12 @@ pub(super) fn features_of(
     ]
 }
 
+/// The frequency up to which the shape of a spectrum is looked at.
+fn highest(question: &PowerQuestion<'_>, motion: &Motion) -> f64 {
+    let last = question.frequencies.last().copied().unwrap_or(0.0);
+    last.max(motion.rate)
+}
+
 /// The numbers of a pair by one model: of its observables, and of what stands for them in spectra.
 fn numbers(
     transfer: &Transfer,
@@ -274,10 +282,9 @@ fn numbers(
     let (step, count) = question.lags;
     let mut all: Vec<f64>;
     if one == other {
-        let highest = question.frequencies.last().copied().unwrap_or(0.0);
         all = frequencies.map(|&at| transfer.power(at, one)).collect();
         let variance = transfer.covariance(pair.0, pair.0);
-        let upto = highest.max(motion.rate);
+        let upto = highest(question, motion);
         all.extend(features_of(transfer, (one, variance), upto));
     } else {
         let cross = frequencies.map(|&at| transfer.cross(at, (one, other)));
@@ -294,7 +301,7 @@ fn of_ends(
     resolvent: &Resolvent,
     [pair, (one, other)]: [(usize, usize); 2],
     question: &PowerQuestion<'_>,
-    numbers: &[f64],
+    (numbers, highest): (&[f64], f64),
 ) -> Vec<f64> {
     let at = |frequency: f64| {
         let there = resolvent.of_ends(frequency, (one, other));
@@ -308,18 +315,30 @@ fn of_ends(
     let along: Vec<f64> = frequencies.map(|&frequency| at(frequency)).collect();
     let mut all = along.clone();
     if one == other {
-        let [peak, width, time, curvature] = [0, 1, 2, 3].map(|place| numbers[along.len() + place]);
-        let power = |frequency: f64| resolvent.transfers[0].power(frequency, one);
-        let share = |frequency: f64| at(frequency) / power(frequency);
+        let [peak, width, time, curvature, rise] =
+            [0, 1, 2, 3, 4].map(|place| numbers[along.len() + place]);
+        let transfer = &resolvent.transfers[0];
+        let power = |frequency: f64| transfer.power(frequency, one);
+        let share = |frequency: f64| at(frequency) / power(frequency).abs();
         let shift = if peak.is_nan() { 0.0 } else { share(peak) };
         let extent = if width.is_nan() { peak } else { width };
         let still = share(0.0);
         all.extend([
             shift * extent,
             2.0 * shift * extent,
-            still * time,
+            still * time.abs(),
             2.0 * still * curvature.abs(),
-            2.0 * shift.max(still),
+            match Shape::new(transfer, one, highest).rise_from_zero() {
+                // What little power there is at zero may hide that the rise begins a little above it.
+                Some((limit, lowest)) if limit == rise => {
+                    let Lowest {
+                        frequency,
+                        steepness,
+                    } = lowest;
+                    (limit - steepness).abs() + 2.0 * share(frequency)
+                }
+                _ => 2.0 * shift.max(still),
+            },
         ]);
     } else {
         all.extend_from_slice(&along);

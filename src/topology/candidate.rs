@@ -64,22 +64,25 @@ pub(super) fn judge(
                 .as_ref()
                 .and_then(|field| height(field, estimated, &component, is_crater))
                 .map(|refined| refined.unless_known(&mut places, estimated));
+            let top = highest(estimated, &component, is_crater);
             let (persistence, standard_error, mut judgement) = match refined {
-                Some((height, error)) => {
+                Some(height) => {
                     let judged = |(height, error): (f64, f64)| {
+                        let error = error + limits.error_of_ends(height, top);
                         (height.max(0.0), error, limits.judge_exact(height, error))
                     };
                     let proof = of_averages(estimated, &component).map(judged);
                     let is_present = |one: &(_, _, Judgement)| one.2.verdict == Verdict::Present;
-                    let between = judged((height, error));
+                    let between = judged(height);
                     match proof.filter(is_present) {
                         Some(proof) if !is_present(&between) => proof,
                         _ => between,
                     }
                 }
                 None => {
-                    let error = noise(estimated, &component);
                     let persistence = ridge::persistence(estimated, &component, is_crater).max(0.0);
+                    let of_ends = limits.error_of_ends(persistence, top);
+                    let error = noise(estimated, &component) + of_ends;
                     (persistence, error, limits.judge(persistence, error))
                 }
             };
@@ -124,6 +127,15 @@ fn of_averages(estimated: &EstimatedDensity, component: &Component) -> Option<(f
             errors[component.birth] + errors[death],
         )
     })
+}
+
+/// The density in the higher one of a component's cells: of a crater that of its rim.
+fn highest(estimated: &EstimatedDensity, component: &Component, is_crater: bool) -> f64 {
+    let cell = match (is_crater, component.death) {
+        (true, Some(rim)) => rim,
+        _ => component.birth,
+    };
+    estimated.density.values[cell]
 }
 
 /// Standard error of the difference between a component's cells of birth and death.

@@ -53,6 +53,7 @@ impl PersistenceDetector {
             cells,
             (density.density.maximum(), density.negligible_height()),
         )
+        .beside_ends(density.truncation.level)
     }
 }
 

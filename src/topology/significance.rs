@@ -13,6 +13,10 @@
 //! ridge leaves few paths, hence a share in between.
 //!
 //! The errors come from few replicates, pooled over a window. A Student quantile allows for that.
+//!
+//! Where the density is no higher than at open ends of the ranges, what is there may have come from beyond them, and a
+//! peak may be made of what is missing: there it has to stand out of the density at the ends. Elsewhere what is missing
+//! is a small share, which changes from place to place as the density itself does and makes no peak.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -42,6 +46,8 @@ pub(super) struct Limits {
     floor: f64,
     /// Least height that counts in a density without noise.
     negligible: f64,
+    /// The density at open ends of the ranges.
+    at_ends: f64,
 }
 
 /// What is said of a persistence.
@@ -71,6 +77,22 @@ impl Limits {
             typical: of_pair * student_limit(share(0.5), freedom),
             floor: options.floor.max(ROUNDING) * maximum,
             negligible: negligible * maximum,
+            at_ends: 0.0,
+        }
+    }
+
+    /// The same where the density at open ends of the ranges is this.
+    pub(super) fn beside_ends(self, at_ends: f64) -> Self {
+        Self { at_ends, ..self }
+    }
+
+    /// What open ends of the ranges may have made of the height of one critical point over another, where the density
+    /// at the higher one is `highest`: the same share of the height as of the density, and no more than the density at
+    /// the ends.
+    pub(super) fn error_of_ends(&self, height: f64, highest: f64) -> f64 {
+        match highest > 0.0 {
+            true => self.at_ends * (height.abs() / highest).min(1.0),
+            false => self.at_ends,
         }
     }
 
@@ -141,6 +163,24 @@ mod tests {
         let normal = Normal::new(0.0, 1.0).unwrap();
         let tail = 0.05 / (2500.0 * 61.0);
         assert!((student_limit(tail, 1e6) + normal.inverse_cdf(tail)).abs() < 1e-3);
+    }
+
+    #[test]
+    fn ends_leave_no_peak_that_is_as_low_as_the_density_there_and_every_one_that_is_far_higher() {
+        let limits =
+            Limits::new(&DetectOptions::default(), 1, 2, 100, (1.0, 0.0)).beside_ends(1e-6);
+        let verdict = |height: f64, highest: f64| {
+            let error = 1e-12 + limits.error_of_ends(height, highest);
+            limits.judge_exact(height, error).verdict
+        };
+        // However deep the saddle beside it is.
+        for share in [1.0, 0.1, 1e-3] {
+            assert_eq!(verdict(share * 0.9e-6, 0.9e-6), Verdict::Absent);
+            assert_eq!(verdict(share * 2.9e-6, 2.9e-6), Verdict::Unresolved);
+            assert_eq!(verdict(share * 3.1e-6, 3.1e-6), Verdict::Present);
+        }
+        assert_eq!(verdict(1e-9, 0.5), Verdict::Present);
+        assert_eq!(verdict(1e-9, -1e-9), Verdict::Absent);
     }
 
     #[test]

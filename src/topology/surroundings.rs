@@ -150,7 +150,10 @@ fn judge(estimated: &EstimatedDensity, around: Enclosure, saddle: usize, limits:
             judgements: Vec::new(),
         };
     };
-    let judge = |peak: &RimPeak| limits.judge_exact(peak.height, peak.error);
+    let judge = |peak: &RimPeak| {
+        let of_ends = limits.error_of_ends(peak.height, peak.density);
+        limits.judge_exact(peak.height, peak.error + of_ends)
+    };
     let judgements: Vec<Judgement> = summits.peaks.iter().map(judge).collect();
     let has_peaks = judgements
         .first()
@@ -180,7 +183,8 @@ fn is_level(estimated: &EstimatedDensity, top: usize, saddle: usize, limits: &Li
         return false;
     };
     let (height, error) = height_above(&top, &low, estimated);
-    limits.judge_exact(height, error).verdict != Verdict::Present
+    let of_ends = limits.error_of_ends(height, top.value(values));
+    limits.judge_exact(height, error + of_ends).verdict != Verdict::Present
 }
 
 /// What there is, and what lies within what.

@@ -639,3 +639,23 @@ relative_tolerance = 1e-3
     assert!(largest_rise_of_square(1.165 - 0.177, 1.594 - 1.028) > Some(0.0));
     assert!((row.value - below).abs() <= row.error && row.error < 0.02);
 }
+
+/// The spectrum of a velocity begins with ω² of the position's, and d ln S / d ln ω falls from 2 on: what it is at some
+/// low frequency, as 1.886 ± 0.002, is no maximum of it.
+#[test]
+fn a_spectrum_that_begins_at_zero_rises_as_the_square_of_the_frequency() {
+    for (stiffness, damping) in [(0.238, 1.672), (0.95, 1.9)] {
+        let text = format!(
+            "[system.equations]\nx = \"v\"\nv = \"-k x - {damping} v\"\n[system.noise]\nv = \"0.712\"\n\
+             [system.parameters]\nk = {stiffness}\n[sweep]\nparameter = \"k\"\nfrom = {stiffness}\nto = 2\npoints = 2\n\
+             [cells]\nx = {{ from = -3.96, to = 3.96, count = 36 }}\nv = {{ from = -1.93, to = 1.93, count = 36 }}\n\
+             [spectrum]\nof = [\"v\"]\n"
+        );
+        let (_, solution) = crate::common::sweeps::solved(&text, "", Some(stiffness));
+        let (rise, error) = crate::common::sweeps::measure(&solution, "spectral_rise_v");
+        assert!(
+            (rise - 2.0).abs() <= error.max(1e-12) && error < 0.4,
+            "{rise} {error}"
+        );
+    }
+}

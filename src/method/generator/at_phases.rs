@@ -3,7 +3,8 @@
 use super::unknowns::by_schemes;
 use crate::density::{EstimatedMoments, Moments, phase_factors, times};
 use crate::method::MethodError;
-use crate::method::tails::{self, Beyond};
+use crate::method::ends::{self, AtEnds};
+use crate::method::tails;
 use crate::space::CellSpace;
 use crate::system::Family;
 
@@ -51,25 +52,21 @@ pub(super) fn moments_at_phases(
         let of = |weights: &[f64], second: Option<&[f64]>, factors: &[f64]| {
             let here = slice.of(&times(weights, factors));
             let second = second.map(|second| slice.of(&times(second, factors)));
-            by_schemes(&slice.space, &here, second.as_deref(), &planes)[axis]
+            by_schemes(&slice.space, &here, second.as_deref(), &planes)
         };
-        let own = of(over.weights, over.others, &factors[0]);
+        let all = of(over.weights, over.others, &factors[0]);
+        let own = all[axis];
         let change = |other: EstimatedMoments| Moments {
             mean: (other.moments.mean - own.moments.mean).abs(),
             standard_deviation: (other.moments.standard_deviation - own.moments.standard_deviation)
                 .abs(),
         };
-        let fewer = change(of(over.weights, None, &factors[1]));
-        let plain = change(of(over.unknowns, over.second, &factors[0]));
+        let fewer = change(of(over.weights, None, &factors[1])[axis]);
+        let plain = change(of(over.unknowns, over.second, &factors[0])[axis]);
         let masses = slice.of(&times(over.masses, &factors[0]));
-        let beyond = tails::tails(&slice.space, &masses, &closed);
-        let beyond: Vec<[Beyond; 2]> = beyond
-            .iter()
-            .map(|ends| ends.map(|end| end.beyond))
-            .collect();
-        let mut all = vec![own; slice.space.dimension()];
-        all[axis] = own;
-        let ends = tails::beyond(&slice.space, (&beyond, 0.0), &all).of(axis, &own.moments);
+        let ends = tails::tails(&slice.space, &masses, &closed);
+        let ends = AtEnds::new(&slice.space, &masses, &ends);
+        let ends = ends::beyond(&slice.space, (&ends, 0.0), &all).of(axis, &own.moments);
         found.push(own.with(fewer).with(plain).with(ends));
     }
     Ok(found)
