@@ -23,12 +23,13 @@ use super::live::{FACTORS, refined, work_of_factors};
 use super::locate::has_wide_cells;
 use super::look::{CloserLook, counted, with_rows};
 use super::segment::Work;
+use super::solved_point::shows_unresolved;
 use super::span::{Span, evenly_spaced};
 use super::walk::Walk;
 use super::{CellCheck, Goal, Point, Want};
 use crate::cancellation::Cancellation;
 use crate::density::Observable;
-use crate::topology::{Detection, Signature};
+use crate::topology::Signature;
 
 /// What is looked at closer, and with what.
 pub(super) struct Closer<'p, 'a> {
@@ -168,8 +169,8 @@ impl<'p, 'a> Closer<'p, 'a> {
     }
 
     /// What the sweep counts at the ends of a stretch, if finer cells count the same, or what an earlier look whose
-    /// rows are kept has counted there. Where the sweep's cells are wide at its own end, or show there what may be an
-    /// error, they are not sure of what is there: finer ones are believed that are not, or that count what others have counted before.
+    /// rows are kept has counted there. At its own end the sweep is not believed against two finer grids that count the
+    /// same; where its cells are wide there, or show what may be an error, not against one whose cells are not.
     fn ends(
         &mut self,
         found: &StretchFindings,
@@ -183,21 +184,17 @@ impl<'p, 'a> Closer<'p, 'a> {
         let of_sweep = [below?, above?];
         let is_known = self.at_ends.contains(&(observable, stretch, own));
         self.at_ends.push((observable, stretch, own));
+        let detector = self.work.detector();
         let is_free = |end: usize| {
             let own = if end == 0 {
                 points.first()
             } else {
                 points.last()
             };
-            let is_unsure = |one: &&Point| {
-                has_wide_cells(one)
-                    || one
-                        .detections
-                        .get(place)
-                        .is_some_and(Detection::has_unresolved)
-            };
+            let is_unsure =
+                |one: &Point| has_wide_cells(one) || shows_unresolved(one, place, detector);
             let own = own.filter(|one| one.value == stretch[end]);
-            own.is_some_and(is_unsure) && (is_known || !found.is_wide)
+            own.is_some_and(|one| is_known || is_unsure(one) && !found.is_wide)
         };
         let small = 1e-6 * self.span.step;
         let is_seen = |end: usize| {

@@ -24,13 +24,20 @@ pub(super) fn is_between_counted(point: &Point, observable: usize, inflection: &
     })
 }
 
-/// Whether the slope of a density along one axis is that between a valley and a peak which is not counted: cells show
-/// the peak, or are too wide to show it.
-pub(super) fn rises_to_uncounted(density: &Density, detection: &Detection, flank: &Flank) -> bool {
-    if flank.line != 0 || flank.value <= 0.0 {
+/// Whether the slope of a density along one axis is that between a valley and a peak which is not counted, where it
+/// is not low: cells show the peak, or are too wide to show it.
+pub(super) fn rises_to_uncounted(
+    density: &Density,
+    detection: &Detection,
+    (flank, least): (&Flank, f64),
+) -> bool {
+    let axis = &density.axes[0];
+    let height = axis
+        .find(flank.place)
+        .map_or(0.0, |cell| density.values[cell]);
+    if flank.line != 0 || flank.value <= 0.0 || height <= least {
         return false;
     }
-    let axis = &density.axes[0];
     let is_within = |cell: usize| 0 < cell && cell + 1 < density.values.len();
     match ends_of_flank(density, flank.place, flank.rising) {
         Some((peak, _)) => is_within(peak) && !is_counted(FeatureKind::Peak, peak, axis, detection),

@@ -10,6 +10,7 @@ use super::walk::Walk;
 use super::{Doubt, Finding, Point};
 use crate::density::Observable;
 use crate::numerics::sort_ascending;
+use crate::topology::Signature;
 
 /// An observable by its place among those that are watched.
 pub(super) type Watched = (usize, Observable);
@@ -52,10 +53,13 @@ impl<'p> InDoubt<'p> {
             .iter()
             .filter(|row| row.observable == of.1 && is_of_cells(row))
             .filter(|row| !self.lacks_modes(row.hull()));
-        // Beside a row that is located its own pair is what is not sure.
+        // Beside a row that is located its own pair is what is not sure, up to where it is counted.
         let is_told = |value: f64| {
             let told = |row: &&Located| row.observable == of.1 && row.doubts.is_empty();
-            let mut told = rows.iter().filter(told).map(Located::hull);
+            let mut told = rows
+                .iter()
+                .filter(told)
+                .map(|row| self.counted_around(row, of.0));
             told.any(|[lower, upper]| (lower..=upper).contains(&value))
         };
         let unsure = self.unsure.iter().filter(|one| !is_told(one.1));
@@ -76,6 +80,20 @@ impl<'p> InDoubt<'p> {
             found.push(around);
         }
         found
+    }
+
+    /// From the last value before a row at which the sweep counts what is there before it to the first one after it at
+    /// which it counts what is there after it; the row's own ends where there are none.
+    fn counted_around(&self, row: &Located, place: usize) -> [f64; 2] {
+        let [lower, upper] = row.hull();
+        let counting = |signature: Signature| {
+            let points = self.points.iter();
+            let counted = points.filter(move |one| one.detections[place].signature == signature);
+            counted.map(|one| one.value)
+        };
+        let below = counting(row.before).rfind(|value| *value <= lower);
+        let above = counting(row.after).find(|value| *value >= upper);
+        [below.unwrap_or(lower), above.unwrap_or(upper)]
     }
 
     /// Whether modes are too few at all values of a stretch: finer cells mend nothing there.

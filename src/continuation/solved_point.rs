@@ -3,7 +3,7 @@
 use super::Point;
 use super::dips::Flanks;
 use super::flank::rises_to_uncounted;
-use crate::topology::{Detector, Flank};
+use crate::topology::{Detector, Flank, Verdict};
 
 /// A point with the flanks of its densities.
 pub(super) struct SolvedPoint {
@@ -26,9 +26,11 @@ impl SolvedPoint {
         let is_unsure = |place: &usize| {
             let (density, detection) =
                 (&point.densities[*place].density, &point.detections[*place]);
-            let is_uncounted = |flank: &Flank| rises_to_uncounted(density, detection, flank);
+            let least = detector.floor() * density.maximum();
+            let is_uncounted =
+                |flank: &Flank| rises_to_uncounted(density, detection, (flank, least));
             !unsure[*place].is_empty()
-                || detection.has_unresolved()
+                || shows_unresolved(&point, *place, detector)
                 || flanks[*place].iter().any(is_uncounted)
         };
         let unsure = (0..unsure.len()).filter(is_unsure).collect();
@@ -38,4 +40,14 @@ impl SolvedPoint {
             unsure,
         }
     }
+}
+
+/// Whether a density shows a feature that is no lower than what is looked for, and that may be what errors make.
+pub(super) fn shows_unresolved(point: &Point, place: usize, detector: &dyn Detector) -> bool {
+    let shown = point.densities.get(place).zip(point.detections.get(place));
+    shown.is_some_and(|(density, detection)| {
+        let least = detector.floor() * density.density.maximum();
+        let mut features = detection.features.iter();
+        features.any(|one| one.verdict == Verdict::Unresolved && one.persistence > least)
+    })
 }

@@ -154,6 +154,10 @@ impl Detector for PersistenceDetector {
         }
     }
 
+    fn floor(&self) -> f64 {
+        self.options.floor
+    }
+
     fn confidence(&self) -> f64 {
         self.options.confidence
     }

@@ -148,12 +148,6 @@ impl Detection {
             .filter(|feature| feature.kind == kind)
             .nth(rank)
     }
-
-    /// Whether a feature may be there, or may be what errors make.
-    pub(crate) fn has_unresolved(&self) -> bool {
-        let mut features = self.features.iter();
-        features.any(|one| one.verdict == Verdict::Unresolved)
-    }
 }
 
 /// Finds the features of a density.
@@ -182,6 +176,11 @@ pub trait Detector: Send + Sync {
     fn flanks(&self, density: &EstimatedDensity, detected: &Detection) -> Vec<Flank> {
         let _ = (density, detected);
         Vec::new()
+    }
+
+    /// Share of a density's maximum below which finer cells are not asked for what is not sure.
+    fn floor(&self) -> f64 {
+        DetectOptions::default().floor
     }
 
     /// Probability with which errors are stated and a sweep's findings hold.

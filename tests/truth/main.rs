@@ -8,6 +8,7 @@ mod common;
 mod angles;
 mod angular_fluctuations;
 mod circulation;
+mod coarse_cells;
 mod coloured_noise;
 mod contacts;
 mod exchanged_peaks;
