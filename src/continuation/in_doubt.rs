@@ -6,11 +6,11 @@
 use super::found::StretchFindings;
 use super::label::Located;
 use super::locate::has_wide_cells;
+use super::look::counted_around;
 use super::walk::Walk;
 use super::{Doubt, Finding, Point};
 use crate::density::Observable;
 use crate::numerics::sort_ascending;
-use crate::topology::Signature;
 
 /// An observable by its place among those that are watched.
 pub(super) type Watched = (usize, Observable);
@@ -59,7 +59,7 @@ impl<'p> InDoubt<'p> {
             let mut told = rows
                 .iter()
                 .filter(told)
-                .map(|row| self.counted_around(row, of.0));
+                .map(|row| counted_around(self.points.iter().copied(), row, of.0));
             told.any(|[lower, upper]| (lower..=upper).contains(&value))
         };
         let unsure = self.unsure.iter().filter(|one| !is_told(one.1));
@@ -80,20 +80,6 @@ impl<'p> InDoubt<'p> {
             found.push(around);
         }
         found
-    }
-
-    /// From the last value before a row at which the sweep counts what is there before it to the first one after it at
-    /// which it counts what is there after it; the row's own ends where there are none.
-    fn counted_around(&self, row: &Located, place: usize) -> [f64; 2] {
-        let [lower, upper] = row.hull();
-        let counting = |signature: Signature| {
-            let points = self.points.iter();
-            let counted = points.filter(move |one| one.detections[place].signature == signature);
-            counted.map(|one| one.value)
-        };
-        let below = counting(row.before).rfind(|value| *value <= lower);
-        let above = counting(row.after).find(|value| *value >= upper);
-        [below.unwrap_or(lower), above.unwrap_or(upper)]
     }
 
     /// Whether modes are too few at all values of a stretch: finer cells mend nothing there.

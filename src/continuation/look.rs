@@ -1,10 +1,10 @@
 //! What a closer look has found, and how its rows take the place of those of the sweep.
 
 use super::label::{self, Label, Located};
-use super::{BifurcationStatus, Doubt, Point, SweepResult};
+use super::{BifurcationStatus, CellCheck, Doubt, Point, SweepResult};
 use crate::density::Observable;
 use crate::numerics::sort_ascending;
-use crate::topology::Signature;
+use crate::topology::{DetectOptions, Detection, Signature, Verdict};
 
 /// What is counted in an observable at a value.
 pub(super) fn counted<'p>(
@@ -14,6 +14,27 @@ pub(super) fn counted<'p>(
 ) -> Option<Signature> {
     let point = points.find(|point| point.value == value)?;
     Some(point.detections.get(place)?.signature)
+}
+
+/// From the last value before a row at which its observable is counted as before it to the first one after it at which
+/// it is counted as after it; the row's own ends where there are none. Between them its own pair is what may not be
+/// sure.
+pub(super) fn counted_around<'p>(
+    points: impl DoubleEndedIterator<Item = &'p Point> + Clone,
+    row: &Located,
+    place: usize,
+) -> [f64; 2] {
+    let [lower, upper] = row.hull();
+    let counting = |signature: Signature| {
+        let counted = points.clone().filter(move |one| {
+            let shown = one.detections.get(place);
+            shown.is_some_and(|shown| shown.signature == signature)
+        });
+        counted.map(|one| one.value)
+    };
+    let below = counting(row.before).rfind(|value| *value <= lower);
+    let above = counting(row.after).find(|value| *value >= upper);
+    [below.unwrap_or(lower), above.unwrap_or(upper)]
 }
 
 /// What a closer look has found: the rows that take the place of those of the sweep in a stretch of it.
@@ -149,6 +170,14 @@ impl Told {
     }
 }
 
+/// Whether a feature is unresolved whose persistence is no lower, against the highest one, than what is looked for.
+fn has_unresolved(shown: &Detection) -> bool {
+    let highest = shown.features.iter().map(|one| one.density);
+    let least = DetectOptions::default().floor * highest.fold(0.0, f64::max);
+    let mut features = shown.features.iter();
+    features.any(|one| one.verdict == Verdict::Unresolved && one.persistence > least)
+}
+
 impl SweepResult {
     /// The densities that the sweep counts differently at some of its values although finer cells have shown that
     /// nothing changes between them: its cells are too wide to count by.
@@ -167,6 +196,33 @@ impl SweepResult {
         let observables = self.subject.observables.iter().enumerate();
         let miscounted = observables.filter(is_miscounted);
         miscounted.map(|(_, observable)| *observable).collect()
+    }
+
+    /// The densities without sampling noise in which at some value a feature is no lower than what is looked for by
+    /// default, and may be what errors make, of which neither a row nor a closer look tells.
+    pub fn undecided(&self) -> Vec<Observable> {
+        if !matches!(self.subject.cell_check, CellCheck::OnFinerCells { .. }) {
+            return Vec::new();
+        }
+        let is_undecided = |&(place, observable): &(usize, &Observable)| {
+            let rows = self
+                .bifurcations()
+                .filter(|row| row.observable == *observable);
+            let rows = rows.map(|row| counted_around(self.points.iter(), row, place));
+            let looks = self
+                .looks
+                .iter()
+                .filter(|one| one.observable == *observable);
+            let told: Vec<[f64; 2]> = rows.chain(looks.map(|one| one.stretch)).collect();
+            let is_told = |value: f64| told.iter().any(|[from, to]| (*from..=*to).contains(&value));
+            let mut points = self.points.iter();
+            points.any(|one| {
+                one.detections.get(place).is_some_and(has_unresolved) && !is_told(one.value)
+            })
+        };
+        let observables = self.subject.observables.iter().enumerate();
+        let undecided = observables.filter(is_undecided);
+        undecided.map(|(_, observable)| *observable).collect()
     }
 }
 

@@ -10,6 +10,7 @@ use super::{
     number::format_with_error,
 };
 use crate::continuation::{ErrorParts, Label, RowWords, SweepResult};
+use crate::density::Observable;
 use crate::system::Family;
 
 /// The table's columns; numbers in full.
@@ -103,18 +104,26 @@ pub(crate) fn bifurcations_markdown(family: &Family, labels: &[Label]) -> String
 }
 
 /// Names the densities that a sweep counts differently from value to value, while finer cells show that nothing
-/// changes; `None` where there are none.
+/// changes, and those in which a feature may be what errors make, though no row tells of it; `None` where there are
+/// none.
 pub(crate) fn miscounted_in_words(result: &SweepResult) -> Option<String> {
-    let names: Vec<String> = (result.miscounted().iter())
-        .map(|observable| observable.name(&result.subject.family))
-        .collect();
-    (!names.is_empty()).then(|| {
-        format!(
-            "{}: the counts of the sweep differ from value to value, but finer cells show no change; its cells are too wide \
-             to count by: give more",
-            names.join(", ")
-        )
-    })
+    let sentence = |of: Vec<Observable>, words: &str| {
+        let names = of.iter().map(|one| one.name(&result.subject.family));
+        let names: Vec<String> = names.collect();
+        (!names.is_empty()).then(|| format!("{}: {words}", names.join(", ")))
+    };
+    let miscounted = sentence(
+        result.miscounted(),
+        "the counts of the sweep differ from value to value, but finer cells show no change; its cells are too wide to \
+         count by: give more",
+    );
+    let undecided = sentence(
+        result.undecided(),
+        "no row tells of a feature that the cells cannot tell from their errors (`unresolved` in features.csv): give more \
+         cells, or a larger `locate.effort`",
+    );
+    let both: Vec<String> = [miscounted, undecided].into_iter().flatten().collect();
+    (!both.is_empty()).then(|| both.join("\n"))
 }
 
 /// A LaTeX table with booktabs rules, values rounded to their errors.
