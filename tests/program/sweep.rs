@@ -135,6 +135,12 @@ fn ends_that_are_counted_differently_without_a_change_are_named() {
         let names_x = |line: &str| line.starts_with("x") && line.contains(words);
         assert!(text.lines().any(names_x), "{text}");
     }
+    // Without finer cells the peak of x that is there at one end, and may be an error, lies beside no row.
+    let again = Room::new();
+    let printed = again.run(&format!("{line} locate.effort=0")).ends(1);
+    let words = "x, y: no row tells of a feature that the cells cannot tell from their errors";
+    assert!(printed.out.contains(words), "{}", printed.out);
+    assert!(again.read("run/bifurcations.md").contains(words));
 }
 
 #[test]
