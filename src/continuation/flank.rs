@@ -32,16 +32,16 @@ pub(super) fn rises_to_uncounted(
     (flank, least): (&Flank, f64),
 ) -> bool {
     let axis = &density.axes[0];
-    let height = axis
-        .find(flank.place)
-        .map_or(0.0, |cell| density.values[cell]);
-    if flank.line != 0 || flank.value <= 0.0 || height <= least {
+    if flank.line != 0 || flank.value <= 0.0 {
         return false;
     }
+    let Some(cell) = (axis.find(flank.place)).filter(|cell| density.values[*cell] > least) else {
+        return false;
+    };
     let is_within = |cell: usize| 0 < cell && cell + 1 < density.values.len();
     match ends_of_flank(density, flank.place, flank.rising) {
         Some((peak, _)) => is_within(peak) && !is_counted(FeatureKind::Peak, peak, axis, detection),
-        None => axis.find(flank.place).is_some_and(is_within),
+        None => is_within(cell),
     }
 }
 

@@ -1,7 +1,8 @@
 //! Where finer cells may tell more than those of a sweep.
 //!
 //! Around rows that are not located; where the slope along a crest is level within its error, so that a pair of peak
-//! and saddle may be there; and where cells are wide, and so are not sure that nothing is there.
+//! and saddle may be there; where a feature may be what errors make, or a slope rises to a peak that is not counted;
+//! and where cells are wide, and so are not sure that nothing is there.
 
 use super::found::StretchFindings;
 use super::label::Located;

@@ -4,7 +4,7 @@ use super::label::{self, Label, Located};
 use super::{BifurcationStatus, CellCheck, Doubt, Point, SweepResult};
 use crate::density::Observable;
 use crate::numerics::sort_ascending;
-use crate::topology::{DetectOptions, Detection, Signature, Verdict};
+use crate::topology::{DetectOptions, Detection, Signature};
 
 /// What is counted in an observable at a value.
 pub(super) fn counted<'p>(
@@ -173,9 +173,7 @@ impl Told {
 /// Whether a feature is unresolved whose persistence is no lower, against the highest one, than what is looked for.
 fn has_unresolved(shown: &Detection) -> bool {
     let highest = shown.features.iter().map(|one| one.density);
-    let least = DetectOptions::default().floor * highest.fold(0.0, f64::max);
-    let mut features = shown.features.iter();
-    features.any(|one| one.verdict == Verdict::Unresolved && one.persistence > least)
+    shown.has_unresolved(DetectOptions::default().floor * highest.fold(0.0, f64::max))
 }
 
 impl SweepResult {

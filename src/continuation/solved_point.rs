@@ -3,7 +3,7 @@
 use super::Point;
 use super::dips::Flanks;
 use super::flank::rises_to_uncounted;
-use crate::topology::{Detector, Flank, Verdict};
+use crate::topology::{Detector, Flank};
 
 /// A point with the flanks of its densities.
 pub(super) struct SolvedPoint {
@@ -46,8 +46,6 @@ impl SolvedPoint {
 pub(super) fn shows_unresolved(point: &Point, place: usize, detector: &dyn Detector) -> bool {
     let shown = point.densities.get(place).zip(point.detections.get(place));
     shown.is_some_and(|(density, detection)| {
-        let least = detector.floor() * density.density.maximum();
-        let mut features = detection.features.iter();
-        features.any(|one| one.verdict == Verdict::Unresolved && one.persistence > least)
+        detection.has_unresolved(detector.floor() * density.density.maximum())
     })
 }

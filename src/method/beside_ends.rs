@@ -2,7 +2,7 @@
 //! as elsewhere, and what is cut off of one axis is missing in the means and deviations of the others.
 
 use crate::density::Moments;
-use crate::space::{Axis, CellSpace};
+use crate::space::CellSpace;
 
 /// Cells at an end in which its states are looked at.
 const CELLS: usize = 3;
@@ -92,14 +92,10 @@ impl BesideEnd {
     }
 }
 
-/// Where the ends of an axis are.
-pub(super) fn ends_of(axis: &Axis) -> [f64; 2] {
-    [axis.from(), axis.to()]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::space::Axis;
 
     #[test]
     fn beyond_an_end_of_a_normal_density_the_other_axis_is_off_by_its_correlation() {

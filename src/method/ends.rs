@@ -1,7 +1,7 @@
 //! Errors of means and deviations by what lies beyond the ends of the ranges: of the axis that ends, of the others, and
 //! of quantities. What leaves within one relaxation time is missing inside as well, and counts as beyond.
 
-use super::beside_ends::{BesideEnd, beside_ends, ends_of};
+use super::beside_ends::{BesideEnd, beside_ends};
 use super::tails::{Beyond, Tail};
 use crate::density::{EstimatedMoments, Moments};
 use crate::space::CellSpace;
@@ -55,7 +55,7 @@ impl AtEnds {
         let others =
             others.filter(|(other, ((cells, _), _))| *other != axis && !cells.0.is_modes());
         for (other, (((cells, beyond), beside), estimated)) in others {
-            let ends = beyond.iter().zip(beside).zip(ends_of(cells));
+            let ends = beyond.iter().zip(beside).zip([cells.from(), cells.to()]);
             for ((beyond, beside), end) in ends.filter(|((beyond, _), _)| beyond.mass > 0.0) {
                 let mass = beyond.mass + leak * beyond.mass / whole;
                 let from = (other, estimated.moments.mean, end);
@@ -91,13 +91,13 @@ pub(super) fn beyond(
             (end - one.moments.mean).abs() / deviation
         };
         // A series reaches beyond its outermost nodes.
-        match axis.is_modes() {
-            true => [(Beyond::default(), 0.0); 2],
-            false => [(found[0], axis.from()), (found[1], axis.to())].map(|(mut beyond, end)| {
-                beyond.mass += leak;
-                (beyond, distance(end))
-            }),
+        if axis.is_modes() {
+            return [(Beyond::default(), 0.0); 2];
         }
+        [(found[0], axis.from()), (found[1], axis.to())].map(|(mut beyond, end)| {
+            beyond.mass += leak;
+            (beyond, distance(end))
+        })
     });
     Ends {
         axes: axes.collect(),

@@ -85,9 +85,12 @@ pub(super) fn by_wider_noise(masses: &[f64], values: &[f64], share: f64) -> Vec<
     let (total, sum) = known.fold((0.0, 0.0), |(total, sum), (mass, logarithm)| {
         (total + mass, sum + mass * logarithm)
     });
-    let change = |(&value, logarithm): (&f64, &f64)| match value > 0.0 {
-        true => -share * value * (logarithm - sum / total),
-        false => 0.0,
+    let change = |(&value, logarithm): (&f64, &f64)| {
+        if value > 0.0 {
+            -share * value * (logarithm - sum / total)
+        } else {
+            0.0
+        }
     };
     values.iter().zip(&logarithms).map(change).collect()
 }

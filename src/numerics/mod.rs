@@ -5,6 +5,9 @@ use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 
+mod limit;
+pub(crate) use limit::limit_at_zero;
+
 /// a·b, in a fixed order of eight sums, which run at once: the same everywhere.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 8];

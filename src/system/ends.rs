@@ -1,6 +1,7 @@
 //! Ends of a range that nothing passes.
 
 use super::System;
+use crate::numerics::limit_at_zero;
 
 /// Places along each other axis at which an end is looked at, as shares of its range.
 const LOOKS: [f64; 7] = [0.03, 0.17, 0.36, 0.52, 0.68, 0.85, 0.98];
@@ -121,9 +122,8 @@ pub(crate) fn largest_power(
         // Both terms are off by multiples of the distance and of its square, the first where it has a limit.
         let has_limit = (seen[0].0 - seen[1].0).abs() <= (1.0 + seen[1].0.abs()) * SETTLED;
         let power = |place: usize| seen[place].0 - order(place);
-        let straight = |place: usize| (APART * power(place) - power(place + 1)) / (APART - 1.0);
-        let power = (APART * APART * straight(0) - straight(1)) / (APART * APART - 1.0);
-        Some(power).filter(|power| has_limit && power.is_finite())
+        let limit = limit_at_zero([0, 1, 2].map(power), APART);
+        Some(limit).filter(|power| has_limit && power.is_finite())
     };
     let powers: Option<Vec<f64>> = states_at(&only(axis, at, ranges.len()), ranges)
         .map(power_at)

@@ -148,6 +148,12 @@ impl Detection {
             .filter(|feature| feature.kind == kind)
             .nth(rank)
     }
+
+    /// Whether a feature of a larger persistence than this may be there, or may be what errors make.
+    pub(crate) fn has_unresolved(&self, least: f64) -> bool {
+        let mut features = self.features.iter();
+        features.any(|one| one.verdict == Verdict::Unresolved && one.persistence > least)
+    }
 }
 
 /// Finds the features of a density.

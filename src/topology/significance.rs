@@ -90,9 +90,10 @@ impl Limits {
     /// at the higher one is `highest`: the same share of the height as of the density, and no more than the density at
     /// the ends.
     pub(super) fn error_of_ends(&self, height: f64, highest: f64) -> f64 {
-        match highest > 0.0 {
-            true => self.at_ends * (height.abs() / highest).min(1.0),
-            false => self.at_ends,
+        if highest > 0.0 {
+            self.at_ends * (height.abs() / highest).min(1.0)
+        } else {
+            self.at_ends
         }
     }
 

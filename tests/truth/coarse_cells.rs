@@ -10,8 +10,8 @@ fn birth() -> f64 {
     places.map(q).fold(f64::INFINITY, f64::min)
 }
 
-/// The second peak is born by half to nine tenths of the sweep, and stays to its end. There it stands out of its valley
-/// by less than three times what schemes differ by, or is not seen at all.
+/// The second peak is born after eight or nine tenths of the sweep, and stays to its end. The cells do not count it
+/// there: the slope alone shows that it turns.
 #[test]
 fn a_peak_that_coarse_cells_do_not_count_at_the_end_of_a_sweep_is_found_by_finer_ones() {
     for (count, to) in [(40, 0.34), (48, 0.32)] {
@@ -22,7 +22,6 @@ fn a_peak_that_coarse_cells_do_not_count_at_the_end_of_a_sweep_is_found_by_finer
              y = {{ from = -6, to = 6, count = {count} }}\n[detect]\nmarginals = [\"y\"]\njoint = []\n"
         );
         let (_, result) = swept(&text, "");
-        assert!(result.undecided().is_empty(), "{count}");
         let [row] = rows(&result, "y")[..] else {
             panic!("{count} cells to {to}: one change");
         };

@@ -6,6 +6,7 @@
 //! (W. Feller, Annals of Mathematics 55, 1952).
 
 use super::rule::look;
+use crate::numerics::limit_at_zero;
 use crate::space::Axis;
 use crate::system::{LANES, System};
 
@@ -80,9 +81,8 @@ pub(crate) fn exponent_at(system: &dyn System, axis: &Axis, end: End) -> Option<
     // which fall out.
     let order = |place: usize| (intensity[place + 1] / intensity[place]).ln() / RATIO.ln();
     let found = |place: usize| rate(place) - order(place);
-    let straight = |place: usize| (RATIO * found(place) - found(place + 1)) / (RATIO - 1.0);
-    let extrapolated = (RATIO * RATIO * straight(0) - straight(1)) / (RATIO * RATIO - 1.0);
-    extrapolated.is_finite().then_some(extrapolated)
+    let limit = limit_at_zero([0, 1, 2].map(found), RATIO);
+    limit.is_finite().then_some(limit)
 }
 
 #[cfg(test)]
