@@ -11,8 +11,8 @@
 //! before, on coarser cells, has shown it too, no farther than order one allows. Else its value is told, and that more
 //! cells are needed. All that looks solve counts as work, the checks of their rows too.
 
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex};
 
 use super::bands::widen;
 use super::counting::{CountingSource, Solves};
@@ -22,13 +22,15 @@ use super::label::{Label, Located};
 use super::live::{FACTORS, refined, work_of_factors};
 use super::locate::has_wide_cells;
 use super::look::{CloserLook, counted, with_rows};
+use super::remembered::{Remembered, RememberingSource};
 use super::segment::Work;
-use super::solved_point::shows_unresolved;
-use super::span::{Span, evenly_spaced};
+use super::solved_point::may_be_miscounted;
+use super::span::Span;
 use super::walk::Walk;
 use super::{CellCheck, Goal, Point, Want};
 use crate::cancellation::Cancellation;
 use crate::density::Observable;
+use crate::numerics::sort_ascending;
 use crate::topology::Signature;
 
 /// What is looked at closer, and with what.
@@ -48,6 +50,8 @@ pub(super) struct Closer<'p, 'a> {
     left: f64,
     /// What the looks solve.
     solves: Arc<Solves>,
+    /// The solutions of looks, by how often their cells are refined.
+    remembered: [Arc<Mutex<Remembered>>; MOST_LOOKS as usize],
 }
 
 /// Values of a stretch at least.
@@ -84,6 +88,7 @@ impl<'p, 'a> Closer<'p, 'a> {
             cancellation,
             left: options.effort * of_sweep.max(WORTH / cells),
             solves: Arc::default(),
+            remembered: Default::default(),
         }
     }
 
@@ -112,7 +117,15 @@ impl<'p, 'a> Closer<'p, 'a> {
                             .settle((place, look.stretch), &found, is_taken);
                         if is_taken {
                             self.seen.extend(found.seen(observable));
+                        }
+                        if is_taken {
                             looks.push(look);
+                        } else {
+                            let settled = found.settled(observable).into_iter();
+                            let points = self.in_doubt.points();
+                            let is_so =
+                                |part: &CloserLook| part.shows_nothing(rows, (place, points));
+                            looks.extend(settled.filter(is_so));
                         }
                     }
                 }
@@ -192,7 +205,7 @@ impl<'p, 'a> Closer<'p, 'a> {
                 points.last()
             };
             let is_unsure =
-                |one: &Point| has_wide_cells(one) || shows_unresolved(one, place, detector);
+                |one: &Point| has_wide_cells(one) || may_be_miscounted(one, place, detector);
             let own = own.filter(|one| one.value == stretch[end]);
             own.is_some_and(|one| is_known || is_unsure(one) && !found.is_wide)
         };
@@ -246,22 +259,23 @@ impl<'p, 'a> Closer<'p, 'a> {
     /// What finer cells show in a stretch; `None` where there are none, or no work is left for them.
     fn swept(
         &mut self,
-        (_, observable): Watched,
+        (place, _): Watched,
         stretch: [f64; 2],
         times: u8,
     ) -> Option<StretchFindings> {
-        let steps = ((stretch[1] - stretch[0]) / self.span.step).ceil() as usize;
-        let values = evenly_spaced((stretch[0], stretch[1]), FEWEST.max(steps + 1));
+        let values = self.values(place, stretch);
         let planned = values.len() as f64 + BEYOND;
         if planned * self.cost(times) > self.left || self.cancellation.is_cancelled() {
             return None;
         }
         let want = Want {
             errors: true,
-            ..Want::densities(&[observable])
+            ..Want::densities(&self.work.source().subject().observables)
         };
         let source = refined(self.work.source(), &want, times).ok()??;
         let source = CountingSource::new(source, times, &self.solves);
+        let remembered = &self.remembered[usize::from(times - 1)];
+        let source = RememberingSource::new(source, place, remembered);
         self.work.tell_of_closer_look(stretch);
         let span = Span::over(stretch, values.len());
         let mut nobody = ();
@@ -299,6 +313,22 @@ impl<'p, 'a> Closer<'p, 'a> {
             is_wide: walk.points.iter().any(has_wide_cells),
             points: walk.points,
         })
+    }
+
+    /// The values of a look: those of the sweep, and one of every stage that the sweep counts between them.
+    fn values(&self, place: usize, stretch: [f64; 2]) -> Vec<f64> {
+        let mut values = self.span.values_within(stretch, FEWEST);
+        let within = |point: &&&Point| (stretch[0]..=stretch[1]).contains(&point.value);
+        let points: Vec<&&Point> = self.in_doubt.points().iter().filter(within).collect();
+        let signature = |point: &Point| point.detections.get(place).map(|one| one.signature);
+        for stage in points.chunk_by(|a, b| signature(a) == signature(b)) {
+            let [from, to] = [stage[0].value, stage[stage.len() - 1].value];
+            if !values.iter().any(|value| (from..=to).contains(value)) {
+                values.push(stage[stage.len() / 2].value);
+            }
+        }
+        sort_ascending(&mut values, |value| *value);
+        values
     }
 
     /// Work for checks on cells that are refined more than once, for each of so many values of a look, in values of it

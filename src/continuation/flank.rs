@@ -39,9 +39,14 @@ pub(super) fn rises_to_uncounted(
         return false;
     };
     let is_within = |cell: usize| 0 < cell && cell + 1 < density.values.len();
+    let is_counted = |kind, cell| is_counted(kind, cell, axis, detection);
     match ends_of_flank(density, flank.place, flank.rising) {
-        Some((peak, _)) => is_within(peak) && !is_counted(FeatureKind::Peak, peak, axis, detection),
-        None => is_within(cell),
+        Some((peak, _)) => is_within(peak) && !is_counted(FeatureKind::Peak, peak),
+        // The flank of a pair that is narrower than cells may be of one that is counted.
+        None => {
+            let mut kinds = [FeatureKind::Peak, FeatureKind::Valley].into_iter();
+            is_within(cell) && !kinds.all(|kind| is_counted(kind, cell))
+        }
     }
 }
 

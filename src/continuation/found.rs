@@ -1,7 +1,7 @@
 //! What finer cells show of a stretch of a sweep.
 
 use super::label::Located;
-use super::look::counted;
+use super::look::{CloserLook, counted};
 use super::{Doubt, Point};
 use crate::density::{EstimatedDensity, Observable};
 use crate::topology::Signature;
@@ -30,6 +30,29 @@ impl StretchFindings {
         let points = self.points.iter();
         let seen = points.filter_map(|one| Some((observable, one.value, self.counted(one.value)?)));
         seen.collect()
+    }
+
+    /// The parts of the stretch in which nothing happens, and nothing is left in doubt, between solved values.
+    pub(super) fn settled(&self, observable: Observable) -> Vec<CloserLook> {
+        let is_sure = |point: &Point| !self.unsure.contains(&point.value);
+        let signature = |point: &Point| Some(point.detections.first()?.signature);
+        let has_row = |a: &Point, b: &Point| {
+            let mut rows = self.rows.iter().map(Located::hull);
+            rows.any(|[from, to]| from <= b.value && a.value <= to)
+        };
+        let parts = self.points.chunk_by(|a, b| {
+            is_sure(a) && is_sure(b) && signature(a) == signature(b) && !has_row(a, b)
+        });
+        let look = |part: &[Point]| {
+            let [first, .., last] = part else { return None };
+            Some(CloserLook {
+                observable,
+                stretch: [first.value, last.value],
+                ends: [signature(first)?, signature(last)?],
+                rows: Vec::new(),
+            })
+        };
+        parts.filter_map(look).collect()
     }
 
     /// Whether all is seen whole, and with smaller errors than the sweep states. Where errors are larger, what is not

@@ -1,6 +1,7 @@
 //! What a closer look has found, and how its rows take the place of those of the sweep.
 
 use super::label::{self, Label, Located};
+use super::solved_point::{is_coarse, least_shown};
 use super::{BifurcationStatus, CellCheck, Doubt, Point, SweepResult};
 use crate::density::Observable;
 use crate::numerics::sort_ascending;
@@ -71,6 +72,19 @@ impl CloserLook {
         row.observable == self.observable && (lower..=upper).contains(&row.value)
     }
 
+    /// Whether it shows that nothing happens in its stretch, where there are no rows, and the sweep counts the same.
+    pub(super) fn shows_nothing(
+        &self,
+        rows: &[Located],
+        (place, points): (usize, &[&Point]),
+    ) -> bool {
+        let [from, to] = self.stretch;
+        let mut within = points.iter().filter(|one| (from..=to).contains(&one.value));
+        let signature = |one: &&Point| one.detections.get(place).map(|one| one.signature);
+        let is_same = within.all(|one| signature(one) == Some(self.ends[0]));
+        is_same && self.rows.is_empty() && !rows.iter().any(|row| self.holds(row))
+    }
+
     /// Takes the place of the rows of the stretch if it tells more than they do; whether it did.
     pub(super) fn replace(&self, rows: &mut Vec<Located>) -> bool {
         let (before, others): (Vec<Located>, Vec<Located>) =
@@ -78,25 +92,43 @@ impl CloserLook {
         if self.rows.is_empty() && !self.is_whole(&before) {
             return false;
         }
-        let is_first = before.is_empty() && !self.rows.is_empty();
-        let (told, tells) = (Told::by(&before), Told::by(&self.rows));
+        let own = self.rows_beside(&before);
+        let is_first = before.is_empty() && !own.is_empty();
+        let (told, tells) = (Told::by(&before), Told::by(&own));
         let is_more = match tells {
-            Told::Located => told < tells || before.len() < self.rows.len(),
+            Told::Located => told < tells || before.len() < own.len(),
             // Of two values that are both less certain than wanted, that of finer cells is the better one, unless it
             // confirms the other with a larger error, of fewer grids.
             Told::Values => {
-                let is_alike = told == tells && before.len() == self.rows.len();
+                let is_alike = told == tells && before.len() == own.len();
                 told < tells || is_first || (is_alike && !self.confirms_widely(&before))
             }
             Told::Bands => false,
         };
-        let is_more = is_more || self.is_narrower(&before);
+        // One that is located says that something happens: what leads to it, or from it, is told with its doubts.
+        let locates_more = located(&before) < located(&own) && before.len() <= own.len();
+        let is_more = is_more || locates_more || self.is_narrower(&before);
         if is_more {
             *rows = others;
-            rows.extend_from_slice(&self.rows);
+            rows.extend(own);
             sort_ascending(rows, |one| one.value);
         }
         is_more
+    }
+
+    /// The rows, with those of the sweep in place of less certain ones that confirm them.
+    fn rows_beside(&self, before: &[Located]) -> Vec<Located> {
+        let confirmed = |own: &Located| {
+            let like = |one: &&Located| {
+                let is_same = (one.before, one.after) == (own.before, own.after);
+                let [lower, upper] = own.hull();
+                is_located(one) && is_same && (lower..=upper).contains(&one.value)
+            };
+            before.iter().find(like).filter(|_| !is_located(own))
+        };
+        let rows = self.rows.iter();
+        rows.map(|own| confirmed(own).unwrap_or(own).clone())
+            .collect()
     }
 
     /// Whether rows of the sweep begin and end with what it counts at the ends of the stretch. Else one of them is of a
@@ -125,7 +157,6 @@ impl CloserLook {
                 || row.doubts.contains(&Doubt::DoesNotContinue)
                 || row.doubts.contains(&Doubt::CoarseCells(row.error, None))
         };
-        let located = |rows: &[Located]| rows.iter().filter(|row| is_located(row)).count();
         let is_new = before.is_empty() && !self.rows.is_empty();
         !self.rows.iter().any(is_contradicted)
             && located(before) <= located(&self.rows)
@@ -138,6 +169,11 @@ fn in_doubt(rows: &[Located]) -> f64 {
     let rows = rows.iter().filter(|row| !is_located(row));
     let lengths = rows.map(Located::hull).map(|[lower, upper]| upper - lower);
     lengths.sum()
+}
+
+/// How many rows are located.
+fn located(rows: &[Located]) -> usize {
+    rows.iter().filter(|row| is_located(row)).count()
 }
 
 fn is_located(row: &Located) -> bool {
@@ -199,28 +235,44 @@ impl SweepResult {
     /// The densities without sampling noise in which at some value a feature is no lower than what is looked for by
     /// default, and may be what errors make, of which neither a row nor a closer look tells.
     pub fn undecided(&self) -> Vec<Observable> {
+        let observables = self.untold(|point, place| {
+            let shown = point.detections.get(place);
+            shown.is_some_and(has_unresolved).then_some(())
+        });
+        observables.into_iter().map(|one| one.0).collect()
+    }
+
+    /// The densities without sampling noise whose errors hide peaks at some value, of which neither a row nor a closer
+    /// look tells, each with the share of the highest peak by which those stand out at least that are not hidden.
+    pub fn coarse(&self) -> Vec<(Observable, f64)> {
+        let observables = self.untold(|point, place| {
+            let density = point.densities.get(place)?;
+            least_shown(density).filter(|_| is_coarse(density))
+        });
+        let most = |shares: Vec<f64>| shares.into_iter().fold(0.0, f64::max);
+        let observables = observables.into_iter();
+        observables.map(|(of, shares)| (of, most(shares))).collect()
+    }
+
+    /// Densities that have something at values of which neither a row nor a closer look tells, with what they have.
+    /// None where finer cells are no matter.
+    fn untold<T>(&self, has: impl Fn(&Point, usize) -> Option<T>) -> Vec<(Observable, Vec<T>)> {
         if !matches!(self.subject.cell_check, CellCheck::OnFinerCells { .. }) {
             return Vec::new();
         }
-        let is_undecided = |&(place, observable): &(usize, &Observable)| {
-            let rows = self
-                .bifurcations()
-                .filter(|row| row.observable == *observable);
+        let untold = |(place, &observable): (usize, &Observable)| {
+            let rows = self.bifurcations();
+            let rows = rows.filter(|row| row.observable == observable);
             let rows = rows.map(|row| counted_around(self.points.iter(), row, place));
-            let looks = self
-                .looks
-                .iter()
-                .filter(|one| one.observable == *observable);
+            let looks = self.looks.iter().filter(|one| one.observable == observable);
             let told: Vec<[f64; 2]> = rows.chain(looks.map(|one| one.stretch)).collect();
             let is_told = |value: f64| told.iter().any(|[from, to]| (*from..=*to).contains(&value));
-            let mut points = self.points.iter();
-            points.any(|one| {
-                one.detections.get(place).is_some_and(has_unresolved) && !is_told(one.value)
-            })
+            let points = self.points.iter().filter(|one| !is_told(one.value));
+            let found: Vec<T> = points.filter_map(|point| has(point, place)).collect();
+            (!found.is_empty()).then_some((observable, found))
         };
         let observables = self.subject.observables.iter().enumerate();
-        let undecided = observables.filter(is_undecided);
-        undecided.map(|(_, observable)| *observable).collect()
+        observables.filter_map(untold).collect()
     }
 }
 

@@ -67,6 +67,7 @@ mod observer;
 mod persistence;
 mod point;
 mod refined;
+mod remembered;
 mod report;
 mod root;
 mod rows;

@@ -3,7 +3,14 @@
 use super::Point;
 use super::dips::Flanks;
 use super::flank::rises_to_uncounted;
+use crate::density::EstimatedDensity;
 use crate::topology::{Detector, Flank};
+
+/// Share of the highest value by which peaks may stand out that errors hide, before cells are too wide to count by.
+const COARSE: f64 = 0.01;
+
+/// A peak is counted whose height over its saddle is so many errors.
+const SAFETY: f64 = 3.0;
 
 /// A point with the flanks of its densities.
 pub(super) struct SolvedPoint {
@@ -24,13 +31,13 @@ impl SolvedPoint {
             .map(|all| all.into_iter().partition(|one| one.is_sure))
             .unzip();
         let is_unsure = |place: &usize| {
-            let (density, detection) =
-                (&point.densities[*place].density, &point.detections[*place]);
+            let (estimated, detection) = (&point.densities[*place], &point.detections[*place]);
+            let density = &estimated.density;
             let least = detector.floor() * density.maximum();
             let is_uncounted =
                 |flank: &Flank| rises_to_uncounted(density, detection, (flank, least));
             !unsure[*place].is_empty()
-                || shows_unresolved(&point, *place, detector)
+                || may_be_miscounted(&point, *place, detector)
                 || flanks[*place].iter().any(is_uncounted)
         };
         let unsure = (0..unsure.len()).filter(is_unsure).collect();
@@ -42,10 +49,25 @@ impl SolvedPoint {
     }
 }
 
-/// Whether a density shows a feature that is no lower than what is looked for, and that may be what errors make.
-pub(super) fn shows_unresolved(point: &Point, place: usize, detector: &dyn Detector) -> bool {
+/// The share of the highest value of a density by which a peak stands out at least that its errors do not hide; `None`
+/// with sampling noise, which is told otherwise, and where there is a centre, at which indicators are read.
+pub(super) fn least_shown(density: &EstimatedDensity) -> Option<f64> {
+    let values = density.density.values.iter().zip(&density.standard_error);
+    let (value, error) = values.max_by(|one, other| one.0.total_cmp(other.0))?;
+    let is_read = density.structure.centre.is_none() && !density.is_noisy();
+    (is_read && *value > 0.0).then(|| SAFETY * error / value)
+}
+
+/// Whether errors of a density hide peaks that are looked for.
+pub(super) fn is_coarse(density: &EstimatedDensity) -> bool {
+    least_shown(density).is_some_and(|share| share > COARSE)
+}
+
+/// Whether a density of a point may have features that are not counted: it shows one that is no lower than what is
+/// looked for, and that may be what errors make, or its errors hide such features.
+pub(super) fn may_be_miscounted(point: &Point, place: usize, detector: &dyn Detector) -> bool {
     let shown = point.densities.get(place).zip(point.detections.get(place));
     shown.is_some_and(|(density, detection)| {
-        detection.has_unresolved(detector.floor() * density.density.maximum())
+        is_coarse(density) || detection.has_unresolved(detector.floor() * density.density.maximum())
     })
 }

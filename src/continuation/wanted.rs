@@ -8,7 +8,10 @@ use super::root::{beyond_doubt, next_value, root};
 use super::span::Span;
 use super::{Goal, Point, levels};
 use crate::system::MeasureLevel;
-use crate::topology::Detector;
+use crate::topology::{Detector, Signature};
+
+/// Steps of the sweep over which an indicator is followed that is lost elsewhere than where the count changes.
+const FOLLOWED: f64 = 0.125 * (1.0 + 1e-9);
 
 /// What is known of a sweep when it is asked where to solve next.
 pub(super) struct Search<'a> {
@@ -77,25 +80,41 @@ impl Search<'_> {
     fn in_changes(&self, solved: &[&Point]) -> Vec<f64> {
         let tolerance = self.options.tolerance;
         let wanted = |change: &Change| match &change.course {
+            Some(course) if self.may_be_another(solved, change, course) => {
+                middle_of(solved[change.left], solved[change.left + 1])
+            }
             Some(Course::Crossing(crossing)) => {
                 next_value(solved, crossing, self.detector.confidence(), tolerance)
             }
             Some(Course::Lost(at, _)) => {
-                let (a, b) = (solved[*at].value, solved[*at + 1].value);
-                let middle = 0.5 * (a + b);
-                (b - a > tolerance && middle > a && middle < b).then_some(middle)
+                let (a, b) = (solved[*at], solved[*at + 1]);
+                middle_of(a, b).filter(|_| b.value - a.value > tolerance)
             }
             Some(Course::Sunk(_) | Course::Beyond(_)) => None,
             None => {
                 let (a, b) = (solved[change.left], solved[change.left + 1]);
-                let middle = 0.5 * (a.value + b.value);
                 let settled = is_settled(a, b, self.span.step, self.options);
-                (!settled && middle > a.value && middle < b.value).then_some(middle)
+                middle_of(a, b).filter(|_| !settled)
             }
         };
         let changes = changes(solved, self.detector);
         let values = changes.iter().filter_map(wanted);
         values.filter(|value| self.is_new(value)).collect()
+    }
+
+    /// Whether an indicator that is lost elsewhere than where the count changes may be another feature's: the count
+    /// changes between values so far apart that its place cannot be followed from one to the other.
+    fn may_be_another(&self, solved: &[&Point], change: &Change, course: &Course) -> bool {
+        let Course::Lost(last, _) = course else {
+            return false;
+        };
+        let is_there = (change.left..change.right).contains(last);
+        // On rings and moats cells count what is theirs.
+        let is_plain = |one: &Signature| one.craters == 0 && one.rings == 0;
+        let is_plain = is_plain(&change.before) && is_plain(&change.after);
+        let width = solved[change.right].value - solved[change.left].value;
+        let is_wide = width > FOLLOWED * self.span.step && width > self.options.tolerance;
+        is_plain && !is_there && change.right == change.left + 1 && is_wide
     }
 
     /// A value between, at which a pair of peak and valley may be there, or not be there, for a while.
@@ -151,4 +170,10 @@ impl Search<'_> {
             .into_iter()
             .collect()
     }
+}
+
+/// The value in the middle of two points, if there is one between them.
+fn middle_of(a: &Point, b: &Point) -> Option<f64> {
+    let middle = 0.5 * (a.value + b.value);
+    (a.value < middle && middle < b.value).then_some(middle)
 }

@@ -329,6 +329,7 @@ pub(crate) fn sweep_outcome(found: &SweepResult, locate: &LocateOptions) -> Outc
     let is_complete = points.all(Point::is_sound)
         && statuses.all(|status| locate.is_met_by(status))
         && found.miscounted().is_empty()
-        && found.undecided().is_empty();
+        && found.undecided().is_empty()
+        && found.coarse().is_empty();
     Outcome::of(found.interrupted, is_complete)
 }

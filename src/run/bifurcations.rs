@@ -104,8 +104,8 @@ pub(crate) fn bifurcations_markdown(family: &Family, labels: &[Label]) -> String
 }
 
 /// Names the densities that a sweep counts differently from value to value, while finer cells show that nothing
-/// changes, and those in which a feature may be what errors make, though no row tells of it; `None` where there are
-/// none.
+/// changes, those in which a feature may be what errors make, though no row tells of it, and those whose errors hide
+/// peaks; `None` where there are none.
 pub(crate) fn miscounted_in_words(result: &SweepResult) -> Option<String> {
     let sentence = |of: Vec<Observable>, words: &str| {
         let names = of.iter().map(|one| one.name(&result.subject.family));
@@ -122,8 +122,20 @@ pub(crate) fn miscounted_in_words(result: &SweepResult) -> Option<String> {
         "no row tells of a feature that the cells cannot tell from their errors (`unresolved` in features.csv): give more \
          cells, or a larger `locate.effort`",
     );
-    let both: Vec<String> = [miscounted, undecided].into_iter().flatten().collect();
-    (!both.is_empty()).then(|| both.join("\n"))
+    let coarse = result.coarse().into_iter().map(|(observable, share)| {
+        format!(
+            "{}: errors of its cells hide peaks that stand out by less than {:.1} % of the highest one: give more cells, or \
+             a larger `locate.effort`",
+            observable.name(&result.subject.family),
+            100.0 * share
+        )
+    });
+    let all: Vec<String> = miscounted
+        .into_iter()
+        .chain(undecided)
+        .chain(coarse)
+        .collect();
+    (!all.is_empty()).then(|| all.join("\n"))
 }
 
 /// A LaTeX table with booktabs rules, values rounded to their errors.

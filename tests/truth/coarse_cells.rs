@@ -33,3 +33,24 @@ fn a_peak_that_coarse_cells_do_not_count_at_the_end_of_a_sweep_is_found_by_finer
         );
     }
 }
+
+/// A second peak of a joint density that comes and goes: 24 cells an axis cannot show it, and say how much they hide.
+/// 48 cells have smaller errors.
+#[test]
+fn what_errors_of_coarse_cells_hide_is_told() {
+    let told = |count: usize| {
+        let text = format!(
+            "[system.equations]\nx = \"-x - 16 (0.39 - q^2) (x - 0.6) exp(-8 (x - 0.6)^2 - 8 (y - 0.8)^2)\"\n\
+             y = \"-y - 16 (0.39 - q^2) (y - 0.8) exp(-8 (x - 0.6)^2 - 8 (y - 0.8)^2)\"\n[system.noise]\n\
+             x = \"sqrt(2)\"\ny = \"sqrt(2)\"\n[system.parameters]\nq = 0.1\n[sweep]\nparameter = \"q\"\nfrom = -0.3\n\
+             to = 0.5\npoints = 5\n[cells]\nx = {{ from = -6, to = 6, count = {count} }}\n\
+             y = {{ from = -6, to = 6, count = {count} }}\n[detect]\nmarginals = []\njoint = [[\"x\", \"y\"]]\n\
+             [locate]\neffort = 0\n"
+        );
+        swept(&text, "").1.coarse()
+    };
+    let coarse = told(24);
+    assert_eq!(coarse.len(), 1);
+    assert!((0.01..0.05).contains(&coarse[0].1), "{coarse:?}");
+    assert_eq!(told(48), []);
+}

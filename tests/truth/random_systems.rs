@@ -8,7 +8,7 @@
 //!     cargo test --release --test truth random_systems:: -- --ignored --nocapture
 //!
 //! prints the tables of docs/location.md. A few systems are run always. With `OTHER_SEEDS=420000` in the environment
-//! other systems of the same families are drawn.
+//! other systems of the same families are drawn, and with `ONLY_SEED=1003` one of them alone.
 
 mod belts;
 mod formulas;
@@ -547,6 +547,9 @@ fn cases(
 ) -> impl Iterator<Item = (u64, Case)> {
     let moved = std::env::var("OTHER_SEEDS").ok();
     let moved = moved.map_or(0, |text| text.parse::<u64>().unwrap());
+    let only = std::env::var("ONLY_SEED").ok();
+    let only = only.map(|text| text.parse::<u64>().unwrap());
+    let seeds = seeds.filter(move |seed| only.is_none_or(|only| only == *seed));
     seeds.filter_map(move |seed| Some((seed, make(seed + moved)?)))
 }
 
