@@ -25,12 +25,11 @@ use super::look::{CloserLook, counted, with_rows};
 use super::remembered::{Remembered, RememberingSource};
 use super::segment::Work;
 use super::solved_point::may_be_miscounted;
-use super::span::Span;
+use super::span::{Span, evenly_spaced};
 use super::walk::Walk;
 use super::{CellCheck, Goal, Point, Want};
 use crate::cancellation::Cancellation;
 use crate::density::Observable;
-use crate::numerics::sort_ascending;
 use crate::topology::Signature;
 
 /// What is looked at closer, and with what.
@@ -263,7 +262,8 @@ impl<'p, 'a> Closer<'p, 'a> {
         stretch: [f64; 2],
         times: u8,
     ) -> Option<StretchFindings> {
-        let values = self.values(place, stretch);
+        let steps = ((stretch[1] - stretch[0]) / self.span.step).ceil() as usize;
+        let values = evenly_spaced((stretch[0], stretch[1]), FEWEST.max(steps + 1));
         let planned = values.len() as f64 + BEYOND;
         if planned * self.cost(times) > self.left || self.cancellation.is_cancelled() {
             return None;
@@ -313,22 +313,6 @@ impl<'p, 'a> Closer<'p, 'a> {
             is_wide: walk.points.iter().any(has_wide_cells),
             points: walk.points,
         })
-    }
-
-    /// The values of a look: those of the sweep, and one of every stage that the sweep counts between them.
-    fn values(&self, place: usize, stretch: [f64; 2]) -> Vec<f64> {
-        let mut values = self.span.values_within(stretch, FEWEST);
-        let within = |point: &&&Point| (stretch[0]..=stretch[1]).contains(&point.value);
-        let points: Vec<&&Point> = self.in_doubt.points().iter().filter(within).collect();
-        let signature = |point: &Point| point.detections.get(place).map(|one| one.signature);
-        for stage in points.chunk_by(|a, b| signature(a) == signature(b)) {
-            let [from, to] = [stage[0].value, stage[stage.len() - 1].value];
-            if !values.iter().any(|value| (from..=to).contains(value)) {
-                values.push(stage[stage.len() / 2].value);
-            }
-        }
-        sort_ascending(&mut values, |value| *value);
-        values
     }
 
     /// Work for checks on cells that are refined more than once, for each of so many values of a look, in values of it

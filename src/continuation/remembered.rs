@@ -1,5 +1,4 @@
-//! Solutions on finer cells that closer looks share: what is solved for one density serves the others, and wider
-//! stretches too.
+//! Solutions on finer cells that closer looks share: what is solved for one density serves the others.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
