@@ -105,9 +105,10 @@ impl CloserLook {
             }
             Told::Bands => false,
         };
-        // One that is located says that something happens: what leads to it, or from it, is told with its doubts.
-        let locates_more = located(&before) < located(&own) && before.len() <= own.len();
-        let is_more = is_more || locates_more || self.is_narrower(&before);
+        // A row with a value says that something happens: what leads to it, or from it, is told with its doubts.
+        let of = |rows: &[Located]| (located(rows), with_values(rows));
+        let tells_of_more = of(&before) < of(&own) && before.len() <= own.len();
+        let is_more = is_more || tells_of_more || self.is_narrower(&before);
         if is_more {
             *rows = others;
             rows.extend(own);
@@ -176,6 +177,17 @@ fn located(rows: &[Located]) -> usize {
     rows.iter().filter(|row| is_located(row)).count()
 }
 
+/// How many rows have values, whatever their errors.
+fn with_values(rows: &[Located]) -> usize {
+    rows.iter().filter(|row| has_value(row)).count()
+}
+
+/// Whether a row is in doubt for no more than its error.
+fn has_value(row: &Located) -> bool {
+    let reason = row.reason();
+    reason.is_none_or(|one| matches!(one, Doubt::CoarseCells(..) | Doubt::SolverError(_)))
+}
+
 fn is_located(row: &Located) -> bool {
     row.status() == BifurcationStatus::Located
 }
@@ -192,10 +204,6 @@ enum Told {
 
 impl Told {
     fn by(rows: &[Located]) -> Self {
-        let has_value = |row: &Located| {
-            let reason = row.reason();
-            reason.is_none_or(|one| matches!(one, Doubt::CoarseCells(..) | Doubt::SolverError(_)))
-        };
         if rows.iter().all(is_located) {
             Self::Located
         } else if rows.iter().all(has_value) {

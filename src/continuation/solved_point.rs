@@ -4,7 +4,7 @@ use super::Point;
 use super::dips::Flanks;
 use super::flank::rises_to_uncounted;
 use crate::density::EstimatedDensity;
-use crate::topology::{Detector, Flank};
+use crate::topology::{Detector, Flank, reading_error};
 
 /// Share of the highest value by which peaks may stand out that errors hide, before cells are too wide to count by.
 const COARSE: f64 = 0.01;
@@ -49,13 +49,14 @@ impl SolvedPoint {
     }
 }
 
-/// The share of the highest value of a density by which a peak stands out at least that its errors do not hide; `None`
-/// with sampling noise, which is told otherwise, and where there is a centre, at which indicators are read.
+/// The share of the highest value of a density by which a peak stands out at least that neither its errors hide nor
+/// cells that are wider than it; `None` with sampling noise, which is told otherwise, and where there is a centre, at
+/// which indicators are read.
 pub(super) fn least_shown(density: &EstimatedDensity) -> Option<f64> {
     let values = density.density.values.iter().zip(&density.standard_error);
     let (value, error) = values.max_by(|one, other| one.0.total_cmp(other.0))?;
     let is_read = density.structure.centre.is_none() && !density.is_noisy();
-    (is_read && *value > 0.0).then(|| SAFETY * error / value)
+    (is_read && *value > 0.0).then(|| SAFETY * (error + reading_error(density)) / value)
 }
 
 /// Whether errors of a density hide peaks that are looked for.

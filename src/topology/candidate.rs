@@ -80,10 +80,22 @@ pub(super) fn judge(
                     }
                 }
                 None => {
-                    let persistence = ridge::persistence(estimated, &component, is_crater).max(0.0);
-                    let of_ends = limits.error_of_ends(persistence, top);
-                    let error = noise(estimated, &component) + of_ends;
-                    (persistence, error, limits.judge(persistence, error))
+                    let left = ridge::persistence(estimated, &component, is_crater);
+                    let judged = |persistence: f64| {
+                        let of_ends = limits.error_of_ends(persistence, top);
+                        let error = noise(estimated, &component) + of_ends;
+                        (persistence, error, limits.judge(persistence, error))
+                    };
+                    // A density that is smooth in truth and cannot be followed between cells is narrower than they are.
+                    let narrow = field.as_ref().map(|_| left.most(component.persistence));
+                    match (judged(left.least()), narrow.map(judged)) {
+                        (least, Some((most, error, judgement)))
+                            if least.2.verdict == Verdict::Absent =>
+                        {
+                            (most, error, judgement.in_doubt())
+                        }
+                        (least, _) => least,
+                    }
                 }
             };
             if component.death.is_none() {

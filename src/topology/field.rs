@@ -12,7 +12,7 @@ use crate::density::{EstimatedDensity, Kink};
 use crate::space::Axis;
 
 /// Half the number of cells of a window, in the finer and the rougher reconstruction, and beside a bend.
-const REACH: [usize; 3] = [4, 3, 2];
+pub(super) const REACH: [usize; 3] = [4, 3, 2];
 
 /// The reconstruction beside a bend: at an end of their windows polynomials of higher degree make more of what the
 /// density is off by in the nearest cells.
@@ -219,7 +219,7 @@ impl<'a> Field<'a> {
     }
 
     /// Cells around a coordinate: as many on either side, moved inward at the ends and away from kinks.
-    fn window(&self, k: usize, at: f64, reach: usize) -> Option<Range<usize>> {
+    pub(super) fn window(&self, k: usize, at: f64, reach: usize) -> Option<Range<usize>> {
         let axis = &self.axes()[k];
         let cell = axis.find(at.clamp(axis.from(), axis.to()))?;
         let nearer_below = at - axis.edges()[cell] < axis.edges()[cell + 1] - at;

@@ -11,6 +11,7 @@ mod exact;
 mod extremum;
 mod field;
 mod indicator;
+mod narrowness;
 mod persistence;
 mod place_error;
 mod quadratic;
@@ -36,6 +37,7 @@ pub(crate) use border::{basin, crest};
 pub use detector::PersistenceDetector;
 pub use indicator::{Flank, Indicator, IndicatorKind};
 pub(crate) use indicator::{Step, born_at_kink, is_clear, peaks_at_ends, two_sided_limit};
+pub(crate) use narrowness::reading_error;
 pub use signature::Signature;
 
 use crate::density::EstimatedDensity;

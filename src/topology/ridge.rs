@@ -18,15 +18,38 @@ const ONE_CELL: f64 = 2.0 / 3.0;
 /// fourth derivative is 3κ²/p. Enough for rings as thin as σ = 1.5 h and as small as r = 4 h (`analytic_tests`).
 const REMAINDER: f64 = 0.6;
 
-/// Persistence of a component of a density over two axes without what the grid adds; at most that of the
-/// cell values. Negative or zero when the grid explains all of it.
+/// Persistence of a component of a density over two axes without what the grid adds, and what terms of order h⁴ may
+/// have added besides.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct WithoutGrid {
+    /// At most that of the cell values.
+    refined: f64,
+    remainder: f64,
+}
+
+impl WithoutGrid {
+    /// What is left for certain; zero when the grid explains all of it.
+    pub(super) fn least(self) -> f64 {
+        (self.refined - self.remainder).max(0.0)
+    }
+
+    /// What may be left; zero where what is known explains all of it.
+    pub(super) fn most(self, of_cells: f64) -> f64 {
+        self.refined.clamp(0.0, of_cells)
+    }
+}
+
+/// What the grid leaves of the persistence of a component.
 pub(super) fn persistence(
     estimated: &EstimatedDensity,
     component: &Component,
     is_crater: bool,
-) -> f64 {
+) -> WithoutGrid {
     let (Some(death), 2) = (component.death, estimated.density.axes.len()) else {
-        return component.persistence;
+        return WithoutGrid {
+            refined: component.persistence,
+            remainder: 0.0,
+        };
     };
     let (birth_kind, sign) = if is_crater {
         (FeatureKind::Crater, -1.0)
@@ -43,7 +66,10 @@ pub(super) fn persistence(
     } else {
         0.0
     };
-    component.persistence.min(refined - remainder)
+    WithoutGrid {
+        refined,
+        remainder: remainder.max(refined - component.persistence),
+    }
 }
 
 /// How much the critical value near a cell exceeds the cell's value, and κh², the larger of the changes of

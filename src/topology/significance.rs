@@ -57,6 +57,19 @@ pub(super) struct Judgement {
     pub(super) verdict: Verdict,
 }
 
+impl Judgement {
+    /// The same of a persistence that may be less than it was judged by.
+    pub(super) fn in_doubt(self) -> Self {
+        match self.verdict {
+            Verdict::Present => Self {
+                verdict: Verdict::Unresolved,
+                ..self
+            },
+            _ => self,
+        }
+    }
+}
+
 impl Limits {
     /// For a density of the given number of axes, cells and maximum, one of `looks` in a sweep.
     pub(super) fn new(
