@@ -50,12 +50,14 @@ impl SolvedPoint {
 }
 
 /// The share of the highest value of a density by which a peak stands out at least that neither its errors hide nor
-/// cells that are wider than it; `None` with sampling noise, which is told otherwise, and where there is a centre, at
-/// which indicators are read.
+/// cells that are wider than it; `None` with sampling noise, which is told otherwise, where there is a centre, at which
+/// indicators are read, and where every extremum follows from the equations.
 pub(super) fn least_shown(density: &EstimatedDensity) -> Option<f64> {
     let values = density.density.values.iter().zip(&density.standard_error);
     let (value, error) = values.max_by(|one, other| one.0.total_cmp(other.0))?;
-    let is_read = density.structure.centre.is_none() && !density.is_noisy();
+    let structure = &density.structure;
+    let is_told = structure.centre.is_some() || structure.profile.is_some();
+    let is_read = !is_told && !density.is_noisy();
     (is_read && *value > 0.0).then(|| SAFETY * (error + reading_error(density)) / value)
 }
 
