@@ -54,9 +54,9 @@ mod tests {
     use crate::density::{Density, Observable};
     use crate::space::Axis;
 
-    /// Of x⁶ eight cells know all. The primitive x⁷/7 over six cells of width h, by the seven edges, is off by the product
-    /// of the distances from these over 7; at the second edge of the range, where it is the largest, its slope by
-    /// 5! h⁶/7.
+    /// Of x⁶ eight cells know all. The primitive x⁷/7 over six cells of width h, by the seven edges, is off by the
+    /// product of the distances from these over 7; at the second edge of the range, where it is the largest, its slope
+    /// by 5! h⁶/7.
     #[test]
     fn a_power_of_six_differs_by_what_its_own_remainder_is() {
         let axis = Axis::uniform(0.0, 1.0, 20).unwrap();

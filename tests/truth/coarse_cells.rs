@@ -36,8 +36,8 @@ fn a_peak_that_coarse_cells_do_not_count_at_the_end_of_a_sweep_is_found_by_finer
     }
 }
 
-/// A second peak of a joint density that comes and goes, along the line through both: the same potential there. It is
-/// there from just before the sweep begins to 0.300666.
+/// A second peak of a joint density that comes and goes. Along the line through both peaks the potential is that of
+/// [`birth`] with 0.39 - q² for its q: it is there from just before the sweep begins to 0.300666.
 fn bump(count: usize, effort: usize) -> SweepResult {
     let text = format!(
         "[system.equations]\nx = \"-x - 16 (0.39 - q^2) (x - 0.6) exp(-8 (x - 0.6)^2 - 8 (y - 0.8)^2)\"\n\
@@ -50,8 +50,8 @@ fn bump(count: usize, effort: usize) -> SweepResult {
     swept(&text, "").1
 }
 
-/// 24 cells an axis cannot show the peak, and say how much they hide: their errors are too large. On 48 cells errors are
-/// small, and the peak is as wide as a cell. On 96 it is there.
+/// 24 cells an axis cannot show the peak, and say how much they hide: their errors are too large. On 48 cells errors
+/// are small, and the peak is as wide as a cell. On 96 it is there.
 #[test]
 fn what_errors_and_widths_of_coarse_cells_hide_is_told() {
     for count in [24, 48] {
