@@ -62,8 +62,8 @@ fn what_errors_and_widths_of_coarse_cells_hide_is_told() {
     assert_eq!(bump(96, 0).coarse(), []);
 }
 
-/// 40 cells an axis have no maximum there, at whatever value, though their averages are known to 0.2 %: they are as wide
-/// as the peak. Finer ones see it.
+/// 40 cells an axis have no maximum there, at whatever value, though their averages are known to 0.2 %: they are as
+/// wide as the peak. Finer ones see it.
 #[test]
 fn a_peak_that_is_narrower_than_a_cell_is_found_by_finer_ones() {
     let result = bump(40, 1);
