@@ -92,7 +92,7 @@ pub(super) fn by_indicator(
     let on_finer = depends_on_cells.then(|| {
         let is_forced = subject.family.model().phase_axis().is_some();
         // Where cells are wide, or hide peaks, and on those that follow them in a closer look, errors may fall by any
-        // order: those of a zero on 54 x 60 and finer cells fell from 3.7e-1 to 1.0e-2, -6.3e-3 and -4.0e-3. Along
+        // order: those of a zero on 54 x 60 and finer cells were -3.8e-1, -1.0e-2, 6.3e-3 and 4.0e-3. Along
         // what a forcing carries to and fro cells are always wide; there, schemes say how far off it is.
         let is_wide = [a, b].into_iter().any(has_wide_cells);
         // Cells are those of all densities of a point.

@@ -35,7 +35,7 @@ impl WithoutGrid {
 
     /// What may be left; zero where what is known explains all of it.
     pub(super) fn most(self, of_cells: f64) -> f64 {
-        self.refined.clamp(0.0, of_cells)
+        self.refined.min(of_cells).max(0.0)
     }
 }
 
