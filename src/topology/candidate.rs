@@ -79,24 +79,13 @@ pub(super) fn judge(
                         _ => between,
                     }
                 }
-                None => {
-                    let left = ridge::persistence(estimated, &component, is_crater);
-                    let judged = |persistence: f64| {
-                        let of_ends = limits.error_of_ends(persistence, top);
-                        let error = noise(estimated, &component) + of_ends;
-                        (persistence, error, limits.judge(persistence, error))
-                    };
-                    // A density that is smooth in truth and cannot be followed between cells is narrower than they are.
-                    let narrow = field.as_ref().map(|_| left.most(component.persistence));
-                    match (judged(left.least()), narrow.map(judged)) {
-                        (least, Some((most, error, judgement)))
-                            if least.2.verdict == Verdict::Absent =>
-                        {
-                            (most, error, judgement.in_doubt())
-                        }
-                        (least, _) => least,
-                    }
-                }
+                None => read_by_cells(
+                    estimated,
+                    &component,
+                    is_crater,
+                    (limits, top),
+                    field.is_some(),
+                ),
             };
             if component.death.is_none() {
                 judgement.verdict = Verdict::Present;
@@ -112,6 +101,30 @@ pub(super) fn judge(
         .collect();
     sort_descending(&mut candidates, |one| one.persistence);
     candidates
+}
+
+/// What cells show of a component that is not followed between them, with its error, where the density at its higher
+/// critical point is `top`. A density that is smooth in truth, and cannot be followed, is narrower than its cells: what
+/// they may have added to the component is not known then, and it is in doubt.
+fn read_by_cells(
+    estimated: &EstimatedDensity,
+    component: &Component,
+    is_crater: bool,
+    (limits, top): (&Limits, f64),
+    is_smooth: bool,
+) -> (f64, f64, Judgement) {
+    let judged = |persistence: f64| {
+        let of_ends = limits.error_of_ends(persistence, top);
+        let error = noise(estimated, component) + of_ends;
+        (persistence, error, limits.judge(persistence, error))
+    };
+    let left = ridge::persistence(estimated, component, is_crater);
+    let least = judged(left.least);
+    if is_smooth && least.2.verdict == Verdict::Absent {
+        let (persistence, error, judgement) = judged(left.most);
+        return (persistence, error, judgement.in_doubt());
+    }
+    least
 }
 
 /// What the averages over cells alone prove of a component of a marginal, with its error: between two cells of a lower

@@ -18,25 +18,14 @@ const ONE_CELL: f64 = 2.0 / 3.0;
 /// fourth derivative is 3κ²/p. Enough for rings as thin as σ = 1.5 h and as small as r = 4 h (`analytic_tests`).
 const REMAINDER: f64 = 0.6;
 
-/// Persistence of a component of a density over two axes without what the grid adds, and what terms of order h⁴ may
-/// have added besides.
+/// Persistence of a component of a density over two axes without what the grid adds: at most that of the cell values,
+/// and zero when the grid explains all of it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WithoutGrid {
-    /// At most that of the cell values.
-    refined: f64,
-    remainder: f64,
-}
-
-impl WithoutGrid {
-    /// What is left for certain; zero when the grid explains all of it.
-    pub(super) fn least(self) -> f64 {
-        (self.refined - self.remainder).max(0.0)
-    }
-
-    /// What may be left; zero where what is known explains all of it.
-    pub(super) fn most(self, of_cells: f64) -> f64 {
-        self.refined.min(of_cells).max(0.0)
-    }
+    /// What is left whatever terms of order h⁴ have added.
+    pub(super) least: f64,
+    /// What is left if they have added nothing.
+    pub(super) most: f64,
 }
 
 /// What the grid leaves of the persistence of a component.
@@ -47,8 +36,8 @@ pub(super) fn persistence(
 ) -> WithoutGrid {
     let (Some(death), 2) = (component.death, estimated.density.axes.len()) else {
         return WithoutGrid {
-            refined: component.persistence,
-            remainder: 0.0,
+            least: component.persistence,
+            most: component.persistence,
         };
     };
     let (birth_kind, sign) = if is_crater {
@@ -66,9 +55,10 @@ pub(super) fn persistence(
     } else {
         0.0
     };
+    let left = |persistence: f64| persistence.min(component.persistence).max(0.0);
     WithoutGrid {
-        refined,
-        remainder: remainder.max(refined - component.persistence),
+        least: left(refined - remainder),
+        most: left(refined),
     }
 }
 
