@@ -66,14 +66,14 @@ impl Change {
             FeatureKind::Ring => {
                 after.rings = moved(before.rings);
                 after.craters = moved(before.craters);
-                if event.was_peak {
-                    after.peaks = match event.above {
-                        true => before.peaks.saturating_sub(1),
-                        false => before.peaks + 1,
-                    };
-                }
             }
             FeatureKind::Valley => {}
+        }
+        if event.was_peak {
+            after.peaks = match event.above {
+                true => before.peaks.saturating_sub(1),
+                false => before.peaks + 1,
+            };
         }
         after.enclosed_peaks = match after.craters {
             0 => 0,
@@ -101,6 +101,7 @@ pub(super) fn changes(points: &[&Point], detector: &dyn Detector) -> Vec<Change>
         let seen: Vec<usize> = (0..points.len())
             .filter(|&index| at(index).is_seen || index == 0 || index == last)
             .collect();
+        let seen = without_level(seen, points, observable);
         for pair in seen.windows(2) {
             if at(pair[0]).signature != at(pair[1]).signature {
                 found.extend(between(points, detector, observable, (pair[0], pair[1])));
@@ -109,6 +110,29 @@ pub(super) fn changes(points: &[&Point], detector: &dyn Detector) -> Vec<Change>
     }
     one_change_a_zero(&mut found, points);
     found
+}
+
+/// Leaves out points at which a density is level where a crater is on one side of them and a peak on the other: they
+/// count neither.
+fn without_level(mut seen: Vec<usize>, points: &[&Point], observable: usize) -> Vec<usize> {
+    let signature = |index: usize| points[index].detections[observable].signature;
+    let mut first = 1;
+    while first < seen.len() {
+        let own = signature(seen[first]);
+        let run = seen[first..].iter().take_while(|&&at| signature(at) == own);
+        let next = first + run.count();
+        let around = seen.get(next).map(|&above| (seen[first - 1], above));
+        let is_level = around.is_some_and(|(below, above)| {
+            signature(below) != own
+                && events::turns_over(points[below], points[above], observable, &own)
+        });
+        if is_level {
+            seen.drain(first..next);
+        } else {
+            first = next;
+        }
+    }
+    seen
 }
 
 /// Leaves a zero to one change alone, the first of those that are nearest to it: there one pair comes or goes. What an
@@ -233,8 +257,17 @@ fn decisive(
         let present = points[if event.above { gap.1 } else { gap.0 }];
         let other = event.on_other_flank(present, observable);
         let course = other.and_then(|other| follow(points, detector, observable, gap, &other));
+        let by_merger = || {
+            let mut courses = event.at_merger(present, observable).into_iter();
+            courses.find_map(|one| {
+                follow(points, detector, observable, gap, &one)
+                    .filter(|course| matches!(course, Course::Crossing(_)))
+            })
+        };
         if let Some(Course::Crossing(_)) = course {
             first = course;
+        } else if let Some(course) = by_merger() {
+            first = Some(course);
         }
     }
     let is_exact = |index: usize| {

@@ -6,10 +6,11 @@
 //! ring's inside to the ring.
 
 use super::Point;
+use super::bracket::count;
 use crate::density::EstimatedDensity;
 use crate::space::Axis;
 use crate::topology::{
-    Feature, FeatureKind, Indicator, IndicatorKind, Verdict, born_at_kink, peaks_at_ends,
+    Feature, FeatureKind, Indicator, IndicatorKind, Signature, Verdict, born_at_kink, peaks_at_ends,
 };
 
 /// Kinds that make a signature.
@@ -33,7 +34,7 @@ pub(super) struct Event {
     pub(super) from_centre: f64,
     /// Where the feature is, at the point that has it.
     pub(super) place: Vec<f64>,
-    /// Of a ring: whether a peak stands inside it at the point that has it not.
+    /// Of a ring, or a crater: whether a peak stands inside it at the point that has it not.
     pub(super) was_peak: bool,
 }
 
@@ -72,6 +73,33 @@ impl Event {
             indicator: Some((IndicatorKind::shoulder(!rising), vec![between])),
             ..self.clone()
         })
+    }
+
+    /// The same of a marginal as the end of a valley between two peaks, or of a peak between two valleys: its valley
+    /// and the peak itself.
+    pub(super) fn at_merger(&self, point: &Point, observable: usize) -> Vec<Self> {
+        let Some((kind, _)) = &self.indicator else {
+            return Vec::new();
+        };
+        let (Some(rising), &[peak]) = (kind.traits().rising, self.place.as_slice()) else {
+            return Vec::new();
+        };
+        let axis = &point.densities[observable].density.axes[0];
+        let valleys = present(point, observable, FeatureKind::Valley);
+        let places = valleys.iter().map(|valley| valley.position[0]);
+        let on_flank = places.filter(|&valley| (axis.apart(valley, peak) < 0.0) == rising);
+        let valley = on_flank.min_by(|a, b| {
+            let [a, b] = [a, b].map(|valley| axis.apart(*valley, peak).abs());
+            a.total_cmp(&b)
+        });
+        let valley = valley.map(|valley| (IndicatorKind::merger(false), valley));
+        let own = (IndicatorKind::merger(true), peak);
+        let both = valley.into_iter().chain([own]);
+        both.map(|(kind, place)| Self {
+            indicator: Some((kind, vec![place])),
+            ..self.clone()
+        })
+        .collect()
     }
 
     /// Whether the density bends at a plane between the critical point of a joint density and the one that it is born
@@ -144,12 +172,25 @@ pub(super) fn events(a: &Point, b: &Point, observable: usize) -> Vec<Event> {
     }
     let mut found = without_moats(found);
     rings_at_rest(&mut found, (a, b), observable, axes);
+    craters_at_rest(&mut found, axes);
     let at_ends = at_natural_ends(a, b, observable);
     if !at_ends.is_empty() {
         found.retain(|event| !event.is_at_natural_end());
         found.extend(at_ends);
     }
     found
+}
+
+/// Whether a crater becomes a peak between two points, or a peak a crater, and this signature has neither.
+pub(super) fn turns_over(a: &Point, b: &Point, observable: usize, between: &Signature) -> bool {
+    let counted = |kind: FeatureKind| {
+        let least = [a, b].map(|point| count(&point.detections[observable], kind));
+        least[0].min(least[1])
+    };
+    let is_turn = |one: &Event| one.feature == FeatureKind::Crater && one.was_peak;
+    between.peaks <= counted(FeatureKind::Peak)
+        && between.craters <= counted(FeatureKind::Crater)
+        && events(a, b, observable).iter().any(is_turn)
 }
 
 /// Natural ends that become peaks, or are peaks no more. The peak comes out of the range, or goes into it, where as
@@ -230,6 +271,32 @@ fn rings_at_rest(
         }
     }
     events.retain(|one| one.feature != FeatureKind::Valley);
+}
+
+/// Craters that peaks become, in either direction, within a ring that stays, or that goes around others as well: both
+/// curvatures vanish there together too. Both are one event.
+fn craters_at_rest(events: &mut Vec<Event>, axes: &[Axis]) {
+    let mut first = 0;
+    while let Some(crater) = (first..events.len())
+        .find(|&index| events[index].feature == FeatureKind::Crater && axes.len() == 2)
+    {
+        first = crater + 1;
+        let own = &events[crater];
+        let was_peak = events.iter().position(|one| {
+            one.feature == FeatureKind::Peak
+                && one.above != own.above
+                && one.from_centre > AT_REST
+                && distance(&one.place, &own.place, axes) < AT_REST
+        });
+        if let Some(peak) = was_peak {
+            let place = events[peak].place.clone();
+            let own = &mut events[crater];
+            own.indicator = Some((IndicatorKind::level(false), place));
+            own.was_peak = true;
+            events.remove(peak);
+            first -= usize::from(peak < crater);
+        }
+    }
 }
 
 /// The point inside the ring of an event.

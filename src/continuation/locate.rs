@@ -106,7 +106,7 @@ pub(super) fn by_indicator(
             check: subject.cell_check,
             share,
             is_forced,
-            is_wide: is_wide && !is_forced,
+            is_wide: (is_wide || hides_peaks) && !is_forced,
             is_followed,
         };
         on_finer_cells(&mut zero, &checked, cells, options, checks)

@@ -151,14 +151,17 @@ impl CloserLook {
     }
 
     /// Whether rows that two grids do not agree on by chance, and that neither finer cells nor other rows contradict,
-    /// leave a shorter stretch in doubt than others, with no fewer located.
+    /// leave a shorter stretch in doubt than others, with no fewer located. Values that finer cells do not have leave
+    /// all in doubt.
     fn is_narrower(&self, before: &[Located]) -> bool {
         let is_contradicted = |row: &Located| {
             row.status() == BifurcationStatus::Unconfirmed
                 || row.doubts.contains(&Doubt::DoesNotContinue)
                 || row.doubts.contains(&Doubt::CoarseCells(row.error, None))
         };
-        let is_new = before.is_empty() && !self.rows.is_empty();
+        let is_denied = |row: &Located| row.doubts.contains(&Doubt::NotOnFinerCells);
+        let is_open = before.is_empty() || before.iter().any(is_denied);
+        let is_new = is_open && !self.rows.is_empty();
         !self.rows.iter().any(is_contradicted)
             && located(before) <= located(&self.rows)
             && (is_new || in_doubt(&self.rows) < in_doubt(before))

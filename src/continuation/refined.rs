@@ -76,7 +76,8 @@ pub(super) fn on_finer_cells(
                     own.max(finer.error)
                 };
                 // Where cells are wide it may be off by as much as that.
-                let by_schemes = if cells.is_wide { finer.error } else { 0.0 };
+                let is_off = cells.is_wide || checked.kind.traits().keeps_error;
+                let by_schemes = if is_off { finer.error } else { 0.0 };
                 // Nor is their order known where they agree so much better than schemes on the coarser cells do; those
                 // of what a forcing carries are always wide.
                 let schemes = if cells.is_forced { finer.error } else { own };

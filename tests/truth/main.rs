@@ -23,6 +23,7 @@ mod located;
 mod location;
 mod long_passages;
 mod means_of_formulas;
+mod mergers;
 mod modal_passages;
 mod moving_jump;
 mod natural_ends;

@@ -30,6 +30,8 @@ pub(crate) struct Traits {
     pub(crate) is_at_centre: bool,
     /// Whether it follows from the equations alone: no cells take part.
     pub(crate) is_exact: bool,
+    /// Whether its error is of what it is read for, and not of the cells alone: finer ones leave what they say of it.
+    pub(crate) keeps_error: bool,
     /// Of one that is read on one side of a kink: whether that is the upper side.
     pub(crate) side_of_kink: Option<bool>,
     /// Of the fold of a marginal: whether the density rises with the coordinate between valley and peak.
@@ -53,6 +55,7 @@ impl Traits {
             is_bifurcation: true,
             is_at_centre: false,
             is_exact: false,
+            keeps_error: false,
             side_of_kink: None,
             rising: None,
             away_from_kink: || None,

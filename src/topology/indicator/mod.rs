@@ -13,6 +13,7 @@
 //! | joint density, smooth centre | the two curvatures of p/p along its principal directions |
 //! | joint density, centre on a kink | slope across the kink; curvature along it |
 //! | joint density, a peak becomes a saddle, or a saddle a peak, on a line of symmetry away from a centre | curvature across the line |
+//! | two peaks merge at the valley between them, or a peak appears within a valley, away from a centre | (log p)'' where (log p)''' = 0, less that at which one peak goes alone |
 //! | joint density, a peak opens to a ring away from a centre, or two rings merge | curvature along an axis there |
 //! | where one peak splits, and curvature is zero: at the centre or away from it | p''''/p at the centre |
 //!
@@ -26,6 +27,7 @@ mod exact;
 mod fold;
 mod kind;
 mod level;
+mod merger;
 mod natural_end;
 mod pair;
 mod quartic;

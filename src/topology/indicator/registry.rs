@@ -4,7 +4,7 @@ use super::IndicatorKind;
 
 impl IndicatorKind {
     /// All but test functions, which are not stored.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 24] = [
         Self::CURVATURE,
         Self::OPPOSITE_CURVATURE,
         Self::KINK_SLOPE,
@@ -25,6 +25,8 @@ impl IndicatorKind {
         Self::split(false, true),
         Self::split(true, false),
         Self::split(true, true),
+        Self::merger(false),
+        Self::merger(true),
         Self::natural_end(false),
         Self::natural_end(true),
     ];
