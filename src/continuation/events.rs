@@ -6,7 +6,6 @@
 //! ring's inside to the ring.
 
 use super::Point;
-use super::bracket::count;
 use crate::density::EstimatedDensity;
 use crate::space::Axis;
 use crate::topology::{
@@ -183,13 +182,13 @@ pub(super) fn events(a: &Point, b: &Point, observable: usize) -> Vec<Event> {
 
 /// Whether a crater becomes a peak between two points, or a peak a crater, and this signature has neither.
 pub(super) fn turns_over(a: &Point, b: &Point, observable: usize, between: &Signature) -> bool {
-    let counted = |kind: FeatureKind| {
-        let least = [a, b].map(|point| count(&point.detections[observable], kind));
-        least[0].min(least[1])
+    let least = |of: fn(&Signature) -> usize| {
+        let counts = [a, b].map(|point| of(&point.detections[observable].signature));
+        counts[0].min(counts[1])
     };
     let is_turn = |one: &Event| one.feature == FeatureKind::Crater && one.was_peak;
-    between.peaks <= counted(FeatureKind::Peak)
-        && between.craters <= counted(FeatureKind::Crater)
+    between.peaks <= least(|one| one.peaks)
+        && between.craters <= least(|one| one.craters)
         && events(a, b, observable).iter().any(is_turn)
 }
 

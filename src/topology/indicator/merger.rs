@@ -2,13 +2,13 @@
 //! of a peak that appears in the middle of a valley.
 //!
 //! That is a pitchfork. It happens where the density depends on the energy alone, whose states of rest need be no
-//! centre of symmetry, and where it is even though the equations are not. There p'/p = δ + a u - b u³ beside the place
-//! u = 0 at which (log p)''' vanishes, with δ = 0, and a passes zero. The slope at the inflection
-//! ([`super::shoulder`]) goes like the power 3/2 of a: errors turn its sign, or hide its zero.
+//! centre of symmetry. There p'/p = δ + a u - b u³ beside the place u = 0 at which (log p)''' vanishes, with δ = 0, and
+//! a passes zero. The slope at the inflection ([`super::shoulder`]) goes like the power 3/2 of a: errors turn its sign,
+//! or hide its zero.
 //!
-//! Whether δ is zero nobody knows. With another δ one peak meets the valley where a = 3 (b δ²/4)^{1/3}, and the other one
-//! stays. What is read here is a less that, for δ between what errors of the density allow: a zero holds the change,
-//! whichever of the two it is.
+//! Whether δ is zero nobody knows. With another δ one peak meets the valley where a = 3 (b δ²/4)^{1/3}, and the other
+//! one stays. What is read here is a less that, for δ between what errors of the density allow: a zero holds the
+//! change, whichever of the two it is.
 
 use std::cmp::Ordering;
 
@@ -27,8 +27,9 @@ const SETTLED: f64 = 1e-6;
 const ASIDE: f64 = 0.5;
 
 impl IndicatorKind {
-    /// Curvature of the logarithm of a marginal where its third derivative vanishes: positive when a valley is there between two peaks;
-    /// with `is_peak`, when a peak is there between two valleys.
+    /// Curvature of the logarithm of a marginal where its third derivative vanishes, less that at which one of two
+    /// peaks meets the valley between them: positive when that valley is there; with `is_peak`, when a peak is there
+    /// between two valleys.
     pub(crate) const fn merger(is_peak: bool) -> Self {
         Self(&BOTH[is_peak as usize])
     }
