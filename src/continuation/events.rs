@@ -171,7 +171,13 @@ pub(super) fn events(a: &Point, b: &Point, observable: usize) -> Vec<Event> {
     }
     let mut found = without_moats(found);
     rings_at_rest(&mut found, (a, b), observable, axes);
-    craters_at_rest(&mut found, axes);
+    // A ring that is there on both sides says that the density follows the energy.
+    if [a, b]
+        .iter()
+        .all(|one| one.detections[observable].signature.rings > 0)
+    {
+        craters_at_rest(&mut found, axes);
+    }
     let at_ends = at_natural_ends(a, b, observable);
     if !at_ends.is_empty() {
         found.retain(|event| !event.is_at_natural_end());
@@ -273,7 +279,7 @@ fn rings_at_rest(
 }
 
 /// Craters that peaks become, in either direction, within a ring that stays, or that goes around others as well: both
-/// curvatures vanish there together too. Both are one event.
+/// curvatures vanish there together too, and third derivatives with them. Both are one event.
 fn craters_at_rest(events: &mut Vec<Event>, axes: &[Axis]) {
     let mut first = 0;
     while let Some(crater) = (first..events.len())
