@@ -14,9 +14,8 @@ fn birth() -> f64 {
 
 /// The second peak is born after eight or nine tenths of the sweep, and stays to its end. The cells do not count it
 /// there: the slope alone shows that it turns.
-#[test]
-fn a_peak_that_coarse_cells_do_not_count_at_the_end_of_a_sweep_is_found_by_finer_ones() {
-    for (count, to) in [(40, 0.34), (48, 0.32)] {
+fn assert_found(cases: &[(usize, f64)]) {
+    for &(count, to) in cases {
         let text = format!(
             "[system.equations]\nx = \"-x\"\ny = \"-y - 16 q (y - 1) exp(-8 (y - 1)^2)\"\n[system.noise]\n\
              x = \"sqrt(2)\"\ny = \"sqrt(2)\"\n[system.parameters]\nq = 0.1\n[sweep]\nparameter = \"q\"\nfrom = 0.1\n\
@@ -34,6 +33,17 @@ fn a_peak_that_coarse_cells_do_not_count_at_the_end_of_a_sweep_is_found_by_finer
             "{count}: {off:e} {row:?}"
         );
     }
+}
+
+#[test]
+fn a_peak_that_coarse_cells_do_not_count_at_the_end_of_a_sweep_is_found_by_finer_ones() {
+    assert_found(&[(48, 0.32)]);
+}
+
+#[test]
+#[ignore = "ten seconds: the same on coarser cells"]
+fn a_peak_that_coarse_cells_do_not_count_at_the_end_of_a_sweep_at_length() {
+    assert_found(&[(40, 0.34)]);
 }
 
 /// A second peak of a joint density that comes and goes. Along the line through both peaks the potential is that of
