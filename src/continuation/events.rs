@@ -281,27 +281,25 @@ fn rings_at_rest(
 /// Craters that peaks become, in either direction, within a ring that stays, or that goes around others as well: both
 /// curvatures vanish there together too, and third derivatives with them. Both are one event.
 fn craters_at_rest(events: &mut Vec<Event>, axes: &[Axis]) {
-    let mut first = 0;
-    while let Some(crater) = (first..events.len())
-        .find(|&index| events[index].feature == FeatureKind::Crater && axes.len() == 2)
+    let peaks = events.iter().filter(|one| one.feature == FeatureKind::Peak);
+    let peaks: Vec<Event> = peaks.cloned().collect();
+    let mut turned = Vec::new();
+    for crater in events
+        .iter_mut()
+        .filter(|one| one.feature == FeatureKind::Crater)
     {
-        first = crater + 1;
-        let own = &events[crater];
-        let was_peak = events.iter().position(|one| {
-            one.feature == FeatureKind::Peak
-                && one.above != own.above
+        let was_peak = peaks.iter().find(|one| {
+            one.above != crater.above
                 && one.from_centre > AT_REST
-                && distance(&one.place, &own.place, axes) < AT_REST
+                && distance(&one.place, &crater.place, axes) < AT_REST
         });
         if let Some(peak) = was_peak {
-            let place = events[peak].place.clone();
-            let own = &mut events[crater];
-            own.indicator = Some((IndicatorKind::level(false), place));
-            own.was_peak = true;
-            events.remove(peak);
-            first -= usize::from(peak < crater);
+            crater.indicator = Some((IndicatorKind::level(false), peak.place.clone()));
+            crater.was_peak = true;
+            turned.push(peak.place.clone());
         }
     }
+    events.retain(|one| one.feature != FeatureKind::Peak || !turned.contains(&one.place));
 }
 
 /// The point inside the ring of an event.

@@ -153,14 +153,14 @@ fn paths_under_a_force_forget_their_start_before_they_are_counted() {
     let text = format!(
         "[system.equations]\nx = \"y\"\ny = \"-g y - x + F cos(w t)\"\n[system.noise]\ny = \"sqrt(0.2 g)\"\n\
          [system.parameters]\ng = {g}\nw = {w}\nF = {force}\n[sweep]\nparameter = \"F\"\nfrom = 0.2\nto = {force}\n\
-         points = 2\n[method]\nkind = \"monte-carlo\"\nerror = 0.02\n[detect]\nmarginals = [\"x @ mean\"]\njoint = []\n"
+         points = 2\n[method]\nkind = \"monte-carlo\"\nerror = 0.01\n[detect]\nmarginals = [\"x @ mean\"]\njoint = []\n"
     );
     let (_, solution) = solved(&text, "figures.draw=[]", None);
     let (found, error) = measure(&solution, "amplitude_x");
     let exact = force / ((1.0 - w * w).powi(2) + (g * w).powi(2)).sqrt();
     let off = (found - exact).abs();
     assert!(
-        off < 3.5 * error && error < 0.02 * exact,
+        off < 3.5 * error && error < 0.01 * exact,
         "{found} ± {error}, exact {exact}"
     );
 }
