@@ -8,6 +8,7 @@ use super::Point;
 use super::events::{self, Event, events};
 use super::follow::{Course, Crossing, follow};
 use super::grid::Counts;
+use super::level_points::without_level;
 use super::root::root;
 use crate::numerics::sort_ascending;
 use crate::topology::{Detector, FeatureKind, Indicator, IndicatorKind, Signature};
@@ -112,29 +113,6 @@ pub(super) fn changes(points: &[&Point], detector: &dyn Detector) -> Vec<Change>
     found
 }
 
-/// Leaves out points at which a density is level where a crater is on one side of them and a peak on the other: they
-/// count neither.
-fn without_level(mut seen: Vec<usize>, points: &[&Point], observable: usize) -> Vec<usize> {
-    let signature = |index: usize| points[index].detections[observable].signature;
-    let mut first = 1;
-    while first < seen.len() {
-        let own = signature(seen[first]);
-        let run = seen[first..].iter().take_while(|&&at| signature(at) == own);
-        let next = first + run.count();
-        let around = seen.get(next).map(|&above| (seen[first - 1], above));
-        let is_level = around.is_some_and(|(below, above)| {
-            signature(below) != own
-                && events::turns_over(points[below], points[above], observable, &own)
-        });
-        if is_level {
-            seen.drain(first..next);
-        } else {
-            first = next;
-        }
-    }
-    seen
-}
-
 /// Leaves a zero to one change alone, the first of those that are nearest to it: there one pair comes or goes. What an
 /// inflection that was lost was followed to in place of it is the zero of another.
 fn one_change_a_zero(changes: &mut [Change], points: &[&Point]) {
@@ -231,7 +209,7 @@ fn between(
 /// bends between it and its saddle: curvatures jump there, and what passes zero is the slope. Where counts follow from
 /// the equations, a change of sign at which the count stays is another event's: a peak that was born on a flank before
 /// it reaches a kink. Then its inflection is followed in place of the kink. Where the slope between a peak and the
-/// valley that it merges with does not change its sign, that on the peak's other side may.
+/// valley that it merges with does not change its sign, that on the peak's other side may, and the curvature of a merger.
 fn decisive(
     points: &[&Point],
     detector: &dyn Detector,
@@ -239,36 +217,25 @@ fn decisive(
     gap: (usize, usize),
     event: &Event,
 ) -> Option<Course> {
-    let density = &points[gap.0].densities[observable];
-    if event.is_across_bend(density) {
-        let course = follow(points, detector, observable, gap, event);
-        if let Some(Course::Crossing(_)) = course {
-            return course;
-        }
+    let follow = |event: &Event| follow(points, detector, observable, gap, event);
+    let crossing = |event: &Event| {
+        let course = follow(event);
+        course.filter(|course| matches!(course, Course::Crossing(_)))
+    };
+    let is_across_bend = event.is_across_bend(&points[gap.0].densities[observable]);
+    let across = is_across_bend.then(|| crossing(event)).flatten();
+    let special = across.or_else(|| event.at_symmetry().iter().find_map(crossing));
+    if special.is_some() {
+        return special;
     }
-    for event in event.at_symmetry() {
-        let course = follow(points, detector, observable, gap, &event);
-        if let Some(Course::Crossing(_)) = course {
-            return course;
-        }
-    }
-    let mut first = follow(points, detector, observable, gap, event);
+    let mut first = follow(event);
     if !matches!(first, Some(Course::Crossing(_))) {
         let present = points[if event.above { gap.1 } else { gap.0 }];
-        let other = event.on_other_flank(present, observable);
-        let course = other.and_then(|other| follow(points, detector, observable, gap, &other));
-        let by_merger = || {
-            let mut courses = event.at_merger(present, observable).into_iter();
-            courses.find_map(|one| {
-                follow(points, detector, observable, gap, &one)
-                    .filter(|course| matches!(course, Course::Crossing(_)))
-            })
-        };
-        if let Some(Course::Crossing(_)) = course {
-            first = course;
-        } else if let Some(course) = by_merger() {
-            first = Some(course);
-        }
+        let flank = event.on_other_flank(present, observable);
+        let mut others = flank
+            .into_iter()
+            .chain(event.at_merger(present, observable));
+        first = others.find_map(|other| crossing(&other)).or(first);
     }
     let is_exact = |index: usize| {
         let density = &points[index].densities[observable];

@@ -9,7 +9,7 @@ use super::Point;
 use crate::density::EstimatedDensity;
 use crate::space::Axis;
 use crate::topology::{
-    Feature, FeatureKind, Indicator, IndicatorKind, Signature, Verdict, born_at_kink, peaks_at_ends,
+    Feature, FeatureKind, Indicator, IndicatorKind, Verdict, born_at_kink, peaks_at_ends,
 };
 
 /// Kinds that make a signature.
@@ -45,99 +45,12 @@ impl Event {
         indicator.is_some_and(|(kind, _)| ends.contains(kind))
     }
 
-    /// The same born at an inflection beside the kink that it was seen at; `None` where no other place is known.
-    pub(super) fn at_inflection(&self) -> Option<Self> {
-        let (kind, place) = self.indicator.as_ref()?;
-        Some(Self {
-            indicator: Some(((kind.traits().away_from_kink)()?, place.clone())),
-            ..self.clone()
-        })
-    }
-
-    /// The same where a peak of one axis meets the valley on its other side: which of its two valleys it was born with,
-    /// or vanishes with, does not follow from their heights at a value some way off. `None` where there is none.
-    pub(super) fn on_other_flank(&self, point: &Point, observable: usize) -> Option<Self> {
-        let (kind, _) = self.indicator.as_ref()?;
-        let (rising, &[peak]) = (kind.traits().rising?, self.place.as_slice()) else {
-            return None;
-        };
-        let axis = &point.densities[observable].density.axes[0];
-        let beyond = present(point, observable, FeatureKind::Valley)
-            .into_iter()
-            .map(|valley| axis.apart(valley.position[0], peak))
-            .filter(|apart| (*apart > 0.0) == rising);
-        let nearest = beyond.min_by(|a, b| a.abs().total_cmp(&b.abs()))?;
-        let between = peak + 0.5 * nearest;
-        Some(Self {
-            indicator: Some((IndicatorKind::shoulder(!rising), vec![between])),
-            ..self.clone()
-        })
-    }
-
-    /// The same of a marginal as the end of a valley between two peaks, or of a peak between two valleys: its valley
-    /// and the peak itself.
-    pub(super) fn at_merger(&self, point: &Point, observable: usize) -> Vec<Self> {
-        let Some((kind, _)) = &self.indicator else {
-            return Vec::new();
-        };
-        let (Some(rising), &[peak]) = (kind.traits().rising, self.place.as_slice()) else {
-            return Vec::new();
-        };
-        let axis = &point.densities[observable].density.axes[0];
-        let valleys = present(point, observable, FeatureKind::Valley);
-        let places = valleys.iter().map(|valley| valley.position[0]);
-        let on_flank = places.filter(|&valley| (axis.apart(valley, peak) < 0.0) == rising);
-        let valley = on_flank.min_by(|a, b| {
-            let [a, b] = [a, b].map(|valley| axis.apart(*valley, peak).abs());
-            a.total_cmp(&b)
-        });
-        let valley = valley.map(|valley| (IndicatorKind::merger(false), valley));
-        let own = (IndicatorKind::merger(true), peak);
-        let both = valley.into_iter().chain([own]);
-        both.map(|(kind, place)| Self {
-            indicator: Some((kind, vec![place])),
-            ..self.clone()
-        })
-        .collect()
-    }
-
-    /// Whether the density bends at a plane between the critical point of a joint density and the one that it is born
-    /// with.
-    pub(super) fn is_across_bend(&self, density: &EstimatedDensity) -> bool {
-        let kinks = density.structure.kinks.iter();
-        let Some((_, between)) =
-            (self.indicator.as_ref()).filter(|one| one.0 == IndicatorKind::FOLD)
-        else {
-            return false;
-        };
-        let mut bends = kinks.filter(|kink| kink.is_bend() && kink.axis < between.len());
-        bends.any(|kink| {
-            let (own, middle) = (self.place[kink.axis], between[kink.axis]);
-            (kink.at - middle).abs() <= (own - middle).abs()
-        })
-    }
-
-    /// The same as a critical point that stays and changes its type, where the density is symmetric about it: the peak
-    /// or crater itself, or the saddle that it grows from.
-    pub(super) fn at_symmetry(&self) -> Vec<Self> {
-        let is_peak = match self.feature {
-            FeatureKind::Peak => true,
-            FeatureKind::Crater => false,
-            FeatureKind::Ring | FeatureKind::Valley => return Vec::new(),
-        };
-        let Some((_, between)) =
-            (self.indicator.as_ref()).filter(|one| one.0 == IndicatorKind::FOLD)
-        else {
-            return Vec::new();
-        };
-        let pairs = self.place.iter().zip(between);
-        let saddle: Vec<f64> = pairs.map(|(own, between)| 2.0 * between - own).collect();
-        [(true, self.place.clone()), (false, saddle)]
-            .map(|(is_it, place)| Self {
-                indicator: Some((IndicatorKind::split(is_peak, is_it), place)),
-                ..self.clone()
-            })
-            .into()
+    /// Whether it is a peak at a place, on one side, away from a centre of symmetry: there the curvatures tell.
+    fn is_peak_at(&self, place: &[f64], above: bool, axes: &[Axis]) -> bool {
+        self.feature == FeatureKind::Peak
+            && self.above == above
+            && self.from_centre > AT_REST
+            && distance(&self.place, place, axes) < AT_REST
     }
 }
 
@@ -186,18 +99,6 @@ pub(super) fn events(a: &Point, b: &Point, observable: usize) -> Vec<Event> {
     found
 }
 
-/// Whether a crater becomes a peak between two points, or a peak a crater, and this signature has neither.
-pub(super) fn turns_over(a: &Point, b: &Point, observable: usize, between: &Signature) -> bool {
-    let least = |of: fn(&Signature) -> usize| {
-        let counts = [a, b].map(|point| of(&point.detections[observable].signature));
-        counts[0].min(counts[1])
-    };
-    let is_turn = |one: &Event| one.feature == FeatureKind::Crater && one.was_peak;
-    between.peaks <= least(|one| one.peaks)
-        && between.craters <= least(|one| one.craters)
-        && events(a, b, observable).iter().any(is_turn)
-}
-
 /// Natural ends that become peaks, or are peaks no more. The peak comes out of the range, or goes into it, where as
 /// many are counted on both sides.
 fn at_natural_ends(a: &Point, b: &Point, observable: usize) -> Vec<Event> {
@@ -244,13 +145,9 @@ fn rings_at_rest(
         };
         let own = present(if above { b } else { a }, observable, FeatureKind::Ring);
         let others = present(if above { a } else { b }, observable, FeatureKind::Ring);
-        let was_peak = events.iter().position(|one| {
-            // At a centre of symmetry the curvatures there tell.
-            one.feature == FeatureKind::Peak
-                && one.above != above
-                && one.from_centre > AT_REST
-                && distance(&one.place, &inside, axes) < AT_REST
-        });
+        let was_peak = events
+            .iter()
+            .position(|one| one.is_peak_at(&inside, !above, axes));
         let at = match was_peak {
             Some(peak) => Some((events[peak].place.clone(), inside.clone())),
             None if others.len() + 1 == own.len() => {
@@ -284,16 +181,10 @@ fn craters_at_rest(events: &mut Vec<Event>, axes: &[Axis]) {
     let peaks = events.iter().filter(|one| one.feature == FeatureKind::Peak);
     let peaks: Vec<Event> = peaks.cloned().collect();
     let mut turned = Vec::new();
-    for crater in events
-        .iter_mut()
-        .filter(|one| one.feature == FeatureKind::Crater)
-    {
-        let was_peak = peaks.iter().find(|one| {
-            one.above != crater.above
-                && one.from_centre > AT_REST
-                && distance(&one.place, &crater.place, axes) < AT_REST
-        });
-        if let Some(peak) = was_peak {
+    let is_crater = |one: &&mut Event| one.feature == FeatureKind::Crater;
+    for crater in events.iter_mut().filter(is_crater) {
+        let was_peak = |one: &&Event| one.is_peak_at(&crater.place, !crater.above, axes);
+        if let Some(peak) = peaks.iter().find(was_peak) {
             crater.indicator = Some((IndicatorKind::level(false), peak.place.clone()));
             crater.was_peak = true;
             turned.push(peak.place.clone());
@@ -343,7 +234,8 @@ fn without_moats(mut events: Vec<Event>) -> Vec<Event> {
     events
 }
 
-fn present(point: &Point, observable: usize, kind: FeatureKind) -> Vec<&Feature> {
+/// The features of a kind that are present at a point.
+pub(super) fn present(point: &Point, observable: usize, kind: FeatureKind) -> Vec<&Feature> {
     let features = point.detections[observable].features.iter();
     features
         .filter(|one| one.kind == kind && one.verdict == Verdict::Present)

@@ -94,19 +94,18 @@ pub(super) fn by_indicator(
         // Where cells are wide, or hide peaks, and on those that follow them in a closer look, errors may fall by any
         // order: those of a zero on 54 x 60 and finer cells were -3.8e-1, -1.0e-2, 6.3e-3 and 4.0e-3. Along
         // what a forcing carries to and fro cells are always wide; there, schemes say how far off it is.
-        let is_wide = [a, b].into_iter().any(has_wide_cells);
+        let has_wide = [a, b].into_iter().any(has_wide_cells);
         // Cells are those of all densities of a point.
         let mut shown = [a, b].into_iter().flat_map(|point| &point.densities);
-        let hides_peaks = shown.any(is_coarse);
-        let is_order_known =
-            is_forced || !(options.is_closer || is_wide || is_followed || hides_peaks);
+        let is_wide = has_wide || shown.any(is_coarse);
+        let is_order_known = is_forced || !(options.is_closer || is_wide || is_followed);
         let share = share_of_distance(subject.cell_check, is_order_known);
         let cells = Cells {
             density,
             check: subject.cell_check,
             share,
             is_forced,
-            is_wide: (is_wide || hides_peaks) && !is_forced,
+            is_wide: is_wide && !is_forced,
             is_followed,
         };
         on_finer_cells(&mut zero, &checked, cells, options, checks)

@@ -348,6 +348,31 @@ mod tests {
     }
 
     #[test]
+    fn what_finer_cells_show_takes_the_place_of_values_that_they_do_not_have() {
+        let band = Located {
+            lower: 0.4,
+            doubts: vec![Doubt::IndicatorLost],
+            ..row(0.5, [2, 1])
+        };
+        let look = CloserLook {
+            observable: Observable::Marginal(0),
+            stretch: [0.3, 0.6],
+            ends: [peaks(2), peaks(1)],
+            rows: vec![band.clone()],
+        };
+        let denied = Located {
+            doubts: vec![Doubt::NotOnFinerCells],
+            ..row(0.45, [2, 1])
+        };
+        let mut rows = vec![denied];
+        assert!(look.replace(&mut rows));
+        assert_eq!(rows, [band]);
+        // Another one that is shorter, and that nothing speaks against but a jump, stays.
+        let mut rows = vec![row(0.45, [2, 1])];
+        assert!(!look.replace(&mut rows));
+    }
+
+    #[test]
     fn a_look_that_sees_nothing_leaves_a_change_that_is_counted_beside_it() {
         let look = CloserLook {
             observable: Observable::Marginal(0),

@@ -28,7 +28,7 @@ pub(super) struct Cells<'a> {
     /// What is claimed of the distance to finer cells.
     pub(super) share: f64,
     pub(super) is_forced: bool,
-    /// Whether they are so wide that errors may fall by any order, and two grids agree by chance.
+    /// Whether they are so wide, or hide so much, that errors may fall by any order, and two grids agree by chance.
     pub(super) is_wide: bool,
     /// Whether finer ones move with what lies inside of these: where in a cell that is here is chance.
     pub(super) is_followed: bool,

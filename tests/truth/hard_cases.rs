@@ -101,6 +101,9 @@ const CASES: &[Case] = &[
     case("epidemic", "", "an epidemic, whose peak reaches the end at which the noise dies",
         &[("I", 0.022_360_679_775)], Located),
     // c³ + 0.3 c - 0.287 c |c| with the corner c = 0.177, at which the slope on one side is level.
+    case("power_tails", "locate.effort=0", "tails like powers, 41 × 45 cells: two grids agree by chance",
+        &[("y", -0.312_38)], Partly(0, "more cells")),
+    case("power_tails", "", "the same with closer looks", &[("y", -0.312_38)], Located),
     case("bent_force", "", "a peak that vanishes at a corner of the force, 80 × 60 cells, to 5e-3 of the range",
         &[("xy", 0.049_653_810)], Located),
     case("bent_force", "locate.relative_tolerance=1e-3", "the same, to 1e-3 of it", &[("xy", 0.049_653_810)], Located),
@@ -222,6 +225,11 @@ fn two_births_inside_one_step_have_a_row_each() {
 #[test]
 fn what_vanishes_at_a_corner_of_a_force_is_located() {
     assert_right(of(&["bent_force"]).take(1));
+}
+
+#[test]
+fn cells_that_hide_peaks_do_not_agree_by_chance() {
+    assert_right(of(&["power_tails"]).take(1));
 }
 
 #[test]

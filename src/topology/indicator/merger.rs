@@ -84,18 +84,21 @@ fn merger(estimated: &EstimatedDensity, near: &[f64], is_peak: bool) -> Option<I
         |values| curvature(fine.jet(values)),
         |values| curvature(rough.jet(values)),
     )?;
-    // Where the peak meets the valley, the cubic's third derivatives are ± 6 b u. What they are says how far the cubic
-    // reaches.
-    let reach = (latest / (3.0 * bend)).sqrt();
-    let thirds = [-reach, reach].map(|u| Some(third(field.jet(&[place + u * field.unit(0)])?)));
-    let bend_there = -sign * (thirds[1]? - thirds[0]?) / (12.0 * reach);
-    let beyond = match reach > 0.0 {
-        true => latest * (bend_there / bend - 1.0).abs(),
-        false => 0.0,
-    };
     found.value -= 0.5 * (earliest + latest);
-    found.systematic_error += 0.5 * (latest - earliest) + beyond;
+    found.systematic_error +=
+        0.5 * (latest - earliest) + latest * beyond_cubic(&field, place, (-sign * bend, latest))?;
     Some(found)
+}
+
+/// How far third derivatives are from 6 c u, those of the cubic c u³, as a share of them, where a peak meets the valley
+/// at the curvature `latest`.
+fn beyond_cubic(field: &Field<'_>, place: f64, (c, latest): (f64, f64)) -> Option<f64> {
+    let reach = (latest / (3.0 * c.abs())).sqrt();
+    if reach == 0.0 {
+        return Some(0.0);
+    }
+    let thirds = [-reach, reach].map(|u| Some(third(field.jet(&[place + u * field.unit(0)])?)));
+    Some(((thirds[1]? - thirds[0]?) / (12.0 * reach * c) - 1.0).abs())
 }
 
 /// The third derivative of the logarithm of a density.
