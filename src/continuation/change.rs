@@ -209,7 +209,8 @@ fn between(
 /// bends between it and its saddle: curvatures jump there, and what passes zero is the slope. Where counts follow from
 /// the equations, a change of sign at which the count stays is another event's: a peak that was born on a flank before
 /// it reaches a kink. Then its inflection is followed in place of the kink. Where the slope between a peak and the
-/// valley that it merges with does not change its sign, that on the peak's other side may, and the curvature of a merger.
+/// valley that it merges with does not change its sign, that on the peak's other side may, and the curvature where
+/// peaks merge.
 fn decisive(
     points: &[&Point],
     detector: &dyn Detector,
